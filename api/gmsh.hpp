@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include "mesh/import.hpp"
+
+namespace signorini::api {
+
+/// The triangles of a .msh file of Gmsh (ASCII, version 2.2 or 4.1), and its lines in physical groups as the
+/// parts of the boundary, named as the groups or by their numbers; lines in no group are left out, and so
+/// are nodes of no triangle. Points and triangles are numbered from 0 in the order of the file.
+///
+/// Throws InvalidProblem at `/domain/msh` with the line for what is no such file, and for other elements
+/// than points, lines and triangles of the first order, a z that is not constant, and nodes that do not
+/// exist. Whether the triangles form a mesh is for import_mesh to see.
+MeshData parse_gmsh(std::string_view text);
+
+/// The mesh of the file: parse_gmsh and import_mesh, whose faults then stand at `/domain/msh`.
+Mesh gmsh_mesh(std::string_view text);
+
+}  // namespace signorini::api

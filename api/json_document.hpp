@@ -1,0 +1,24 @@
+#pragma once
+
+#include <stdexcept>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace signorini::api {
+
+/// How many arrays and objects may stand within each other.
+inline constexpr std::size_t deepest = 64;
+
+/// A text that is not a JSON document as this service takes them (I-JSON, RFC 7493): a syntax error,
+/// invalid UTF-8, a duplicate member, a number that overflows, nesting deeper than 64.
+class MalformedJson : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Parses a document strictly. Throws MalformedJson, whose text names the place (line and column, or the
+/// JSON pointer of a duplicate member).
+nlohmann::json parse_json(std::string_view text);
+
+}  // namespace signorini::api

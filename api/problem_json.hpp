@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "problem/problem.hpp"
+#include "problem/settings.hpp"
+#include "problem/study.hpp"
+
+namespace signorini::api {
+
+/// A problem as a client poses it: what to solve, how, and under which title.
+struct Request {
+  std::string title;
+  Problem problem;
+  Settings settings;
+  std::vector<Variation> sweep;
+  std::optional<Study> study;
+};
+
+/// Reads a problem document (api-contract, "A problem"). Throws MalformedJson if the text is no JSON, and
+/// InvalidProblem with every fault found, each with its JSON pointer and the allowed values: of the
+/// document, and if it has none, those that validate() of the solver sees.
+Request parse_request(std::string_view text);
+
+}  // namespace signorini::api

@@ -1,0 +1,156 @@
+#include "api/result_members.hpp"
+
+namespace signorini::api {
+namespace {
+
+void write_notes(DocumentWriter& out, const std::vector<std::string>& notes) {
+  out.begin_array();
+  for (const std::string& note : notes) out.value(note);
+  out.end_array();
+}
+
+void write_residuals(DocumentWriter& out, const Residuals& residuals) {
+  out.begin_object()
+      .member("equilibrium", residuals.equilibrium)
+      .member("constitutive", residuals.constitutive)
+      .member("penetration", residuals.penetration)
+      .member("tension", residuals.tension)
+      .member("complementarity", residuals.complementarity)
+      .member("symmetry", residuals.symmetry)
+      .end_object();
+}
+
+void write_contact_sums(DocumentWriter& out, const ContactSummary& contact) {
+  out.begin_object()
+      .member("force", contact.force)
+      .member("max_pressure", contact.max_pressure)
+      .member("length", contact.length)
+      .end_object();
+}
+
+void write_reactions(DocumentWriter& out, const std::vector<Reaction>& parts) {
+  out.begin_object();
+  for (const Reaction& part : parts) {
+    out.key(part.part).begin_object();
+    if (part.force.size() == 1) {
+      out.member("force", part.force[0]);
+    } else {
+      out.key("force").begin_array().value(part.force[0]).value(part.force[1]).end_array();
+      out.member("moment", part.moment);
+    }
+    out.end_object();
+  }
+  out.end_object();
+}
+
+void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
+  out.begin_object()
+      .member("value", bound.value)
+      .member("relative", bound.relative)
+      .member("guaranteed", bound.guaranteed);
+  if (!bound.guaranteed) {
+    out.key("unmet").begin_array();
+    for (const std::string& reason : bound.unmet) out.value(reason);
+    out.end_array();
+  }
+  out.member("energy_lower", bound.energy_lower).member("energy_upper", bound.energy_upper);
+  out.key("parts")
+      .begin_object()
+      .member("constitutive", bound.parts.constitutive)
+      .member("contact", bound.parts.contact)
+      .member("oscillation", bound.parts.oscillation)
+      .member("equilibration", bound.parts.equilibration)
+      .end_object();
+  out.end_object();
+}
+
+/// A column each, as in the history.
+void write_levels(DocumentWriter& out, const std::vector<Level>& levels) {
+  const auto column = [&](std::string_view name, const auto& entry) {
+    out.key(name).rows({levels.size()}, [&](std::size_t i) { return entry(levels[i]); });
+  };
+  out.begin_object();
+  column("level", [](const Level& level) { return level.number; });
+  column("triangles", [](const Level& level) { return level.triangles; });
+  column("unknowns", [](const Level& level) { return level.unknowns; });
+  column("bound", [](const Level& level) { return level.bound; });
+  column("relative", [](const Level& level) { return level.relative; });
+  column("iterations", [](const Level& level) { return level.iterations; });
+  column("seconds", [](const Level& level) { return level.seconds; });
+  out.end_object();
+}
+
+void write_timings(DocumentWriter& out, const Timings& timings) {
+  out.begin_object()
+      .member("mesh", timings.mesh)
+      .member("assemble", timings.assemble)
+      .member("factorize", timings.factorize)
+      .member("iterate", timings.iterate)
+      .member("certify", timings.certify)
+      .member("total", timings.total)
+      .end_object();
+}
+
+void write_entry_summary(DocumentWriter& out, const SweepEntry& entry) {
+  out.begin_object()
+      .member("outcome", name(entry.outcome))
+      .member("iterations", entry.iterations)
+      .member("energy", entry.energy);
+  out.key("residuals")
+      .begin_object()
+      .member("penetration", entry.penetration)
+      .member("tension", entry.tension)
+      .member("complementarity", entry.complementarity)
+      .end_object();
+  write_contact_sums(out.key("contact"), entry.sums);
+  write_reactions(out.key("parts"), entry.parts);
+  out.member("seconds", entry.seconds).end_object();
+}
+
+}  // namespace
+
+void write_unknowns(DocumentWriter& out, const Unknowns& unknowns) {
+  out.begin_object()
+      .member("stress", unknowns.stress)
+      .member("displacement", unknowns.displacement)
+      .member("contact", unknowns.contact)
+      .member("rotation", unknowns.rotation)
+      .end_object();
+}
+
+void write_summary(DocumentWriter& out, const Summary& summary) {
+  out.begin_object().member("outcome", name(summary.outcome));
+  if (!summary.advice.empty()) out.member("advice", summary.advice);
+  if (!summary.notes.empty()) write_notes(out.key("notes"), summary.notes);
+  out.member("method", summary.method)
+      .member("iterations", summary.iterations)
+      .member("triangles", summary.triangles);
+  write_unknowns(out.key("unknowns"), summary.unknowns);
+  out.member("energy", summary.energy);
+  write_residuals(out.key("residuals"), summary.residuals);
+  write_contact_sums(out.key("contact"), summary.contact);
+  write_reactions(out.key("parts"), summary.parts);
+  out.member("reused", summary.reused);
+  if (summary.error_bound) write_error_bound(out.key("error_bound"), *summary.error_bound);
+  if (!summary.levels.empty()) write_levels(out.key("levels"), summary.levels);
+  write_timings(out.key("timings"), summary.timings);
+  out.member("peak_memory_bytes", summary.peak_memory_bytes).end_object();
+}
+
+void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact) {
+  out.begin_array();
+  for (const SweepEntry& entry : sweep) {
+    out.begin_object();
+    if (!entry.title.empty()) out.member("title", entry.title);
+    out.member("status", is_solved(entry) ? "succeeded" : "failed");
+    if (!is_solved(entry)) out.member("error", entry.error.empty() ? entry.advice : entry.error);
+    if (entry.error.empty()) {
+      write_entry_summary(out.key("summary"), entry);
+      if (with_contact) write_contact(out.key("contact"), entry.contact);
+    }
+    out.end_object();
+  }
+  out.end_array();
+}
+
+}  // namespace signorini::api

@@ -1,0 +1,173 @@
+#include "server/config.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+
+#include <CLI/CLI.hpp>
+
+#include "server/exit_code.hpp"
+
+namespace signorini::server {
+namespace {
+
+constexpr std::int64_t hundred_years = 100LL * 365 * 24 * 3600;
+
+/// `queue-limit` is also read from SIGNORINI_QUEUE_LIMIT.
+std::string variable_of(const std::string& name) {
+  std::string variable = "SIGNORINI_" + name;
+  std::transform(variable.begin(), variable.end(), variable.begin(),
+                 [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::toupper(c)); });
+  return variable;
+}
+
+template <class Value>
+CLI::Option* add_flag(CLI::App& app, const std::string& flag, Value& value, const std::string& help) {
+  return app.add_option(flag, value, help)->envname(variable_of(flag.substr(2)))->capture_default_str();
+}
+
+/// A file in TOML, `name = value` a line. CLI11 would take the file before the environment.
+class BelowEnvironment : public CLI::ConfigTOML {
+ public:
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::vector<CLI::ConfigItem> found = CLI::ConfigTOML::from_config(input);
+    std::erase_if(found,
+                  [](const CLI::ConfigItem& item) { return std::getenv(variable_of(item.name).c_str()); });
+    return found;
+  }
+};
+
+void add_config_file(CLI::App& app) {
+  app.config_formatter(std::make_shared<BelowEnvironment>());
+  app.set_config("--config", "", "File with flags, `name = value` a line, as --print-config writes it")
+      ->envname(variable_of("config"))
+      ->configurable(false);
+  app.allow_config_extras(CLI::config_extras_mode::error);
+}
+
+/// A number of bytes with an optional unit: 1048576, 1024kb, 1mb.
+void take_bytes(CLI::Option* option, std::size_t low) {
+  option->transform(CLI::AsSizeValue(false));
+  option->check(CLI::Range(low, std::numeric_limits<std::size_t>::max() / 2, "BYTES"));
+}
+
+void add_access_flags(CLI::App& app, DaemonConfig& daemon) {
+  add_flag(app, "--rate", daemon.rate, "Requests a second of one client; 0 is no limit")
+      ->check(CLI::Range(0.0, 1e6));
+  add_flag(app, "--token-file", daemon.token_file,
+           "Tokens by which clients are let in, one a line; needed to listen beyond this machine");
+  app.add_flag("--insecure", daemon.insecure, "Listens beyond this machine without tokens")
+      ->envname(variable_of("insecure"));
+  add_flag(app, "--cors-origin", daemon.cors_origins,
+           "Origin whose pages browsers let in, such as https://example.org; several, or *, may be given")
+      ->default_str("")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
+void add_daemon_flags(CLI::App& app, DaemonConfig& daemon) {
+  add_flag(app, "--host", daemon.host, "Address to listen on");
+  add_flag(app, "--port", daemon.port, "Port to listen on; 0 takes a free one")->check(CLI::Range(0, 65535));
+  add_flag(app, "--workers", daemon.workers, "Solves that run at the same time")->check(CLI::Range(1, 256));
+  add_flag(app, "--data-dir", daemon.data_dir, "Directory where solves are kept; :memory: keeps nothing")
+      ->check(
+          CLI::Validator([](const std::string& value) { return value.empty() ? "is empty" : ""; }, "DIR"));
+  add_flag(app, "--queue-limit", daemon.queue_limit, "Solves that may wait; more are refused with 503")
+      ->check(CLI::Range(1, 100000));
+  take_bytes(add_flag(app, "--keep-bytes", daemon.keep_bytes,
+                      "Disk or memory for ended solves; the oldest are dropped"),
+             0);
+  add_flag(app, "--keep-seconds", daemon.keep_seconds, "How long ended solves are kept")
+      ->check(CLI::Range(std::int64_t{1}, hundred_years));
+  take_bytes(add_flag(app, "--cache-bytes", daemon.cache_bytes,
+                      "Memory for factors that later solves may use again; 0 keeps none"),
+             0);
+  take_bytes(add_flag(app, "--max-body-bytes", daemon.max_body_bytes, "Longest body of a request, decoded"),
+             1024);
+  add_flag(app, "--max-unknowns", daemon.max_unknowns, "Most stress unknowns of a problem")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40));
+  take_bytes(add_flag(app, "--max-memory", daemon.max_memory,
+                      "Memory for the solves that run at the same time, as predicted"),
+             std::size_t{1} << 20);
+  add_flag(app, "--max-subscribers", daemon.max_subscribers, "Streams of events that may be open")
+      ->check(CLI::Range(1, 100000));
+  add_flag(app, "--drain-seconds", daemon.drain_seconds,
+           "How long running solves may go on after SIGTERM; then they are queued again")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{3600}));
+  add_access_flags(app, daemon);
+}
+
+/// A command with options of its own, which no configuration file has.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->option_defaults()->configurable(false);
+  return command;
+}
+
+CLI::App* add_solve(CLI::App& app, SolveConfig& solve) {
+  CLI::App* command =
+      add_command(app, "solve", "Solve one problem without a server; the result goes to stdout");
+  command->add_option(
+      "--fields", solve.fields,
+      "Members of the result, e.g. summary,contact (all if not given; summary is always there)");
+  command->add_option("--format", solve.format, "Of the result: json, cbor, or vtu for ParaView")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"json", "cbor", "vtu"}));
+  command->add_option("FILE", solve.file, "Problem document; - reads standard input")->required();
+  return command;
+}
+
+CLI::App* add_study(CLI::App& app, StudyConfig& study) {
+  CLI::App* command =
+      add_command(app, "study", "Solve the study of one problem without a server; its table goes to stdout");
+  command->add_option("--format", study.format, "Of the table: table to read, json or csv")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"table", "json", "csv"}));
+  command->add_option("FILE", study.file, "Problem document with a study; - reads standard input")
+      ->required();
+  return command;
+}
+
+int exit_code_of(CLI::App& app, const CLI::ParseError& error) {
+  return app.exit(error) == 0 ? exit_done : exit_bad_input;
+}
+
+}  // namespace
+
+CommandLine read_command_line(int argc, const char* const* argv) {
+  CommandLine line;
+  SolveConfig solve;
+  CLI::App app("Signorini: frictionless contact by the dual mixed finite element method, as an HTTP service");
+  app.set_version_flag("--version", "signorinid " SIGNORINI_VERSION)->configurable(false);
+  add_config_file(app);
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "Write the configuration as a file for --config, and end")
+      ->configurable(false);
+  add_flag(app, "--log-level", line.config.log_level, "What goes to standard error")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}));
+  add_flag(app, "--log-format", line.config.log_format, "How it is written there")
+      ->check(CLI::IsMember({"text", "json"}));
+  add_daemon_flags(app, line.config.daemon);
+  StudyConfig study;
+  const CLI::App* solve_command = add_solve(app, solve);
+  const CLI::App* study_command = add_study(app, study);
+  const CLI::App* health_command = add_command(
+      app, "health", "Ask the service on --host and --port whether it lives; exit code 0 if it does");
+  try {
+    app.parse(argc, argv);
+    if (solve_command->parsed()) line.config.solve = solve;
+    if (study_command->parsed()) line.config.study = study;
+    line.config.health = health_command->parsed();
+    if (print_config) {
+      std::cout << app.config_to_str(true, true);
+      line.exit_code = exit_done;
+    }
+  } catch (const CLI::ParseError& error) {
+    line.exit_code = exit_code_of(app, error);
+  }
+  return line;
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,120 @@
+#include "server/handlers/documents.hpp"
+
+#include "api/result_members.hpp"
+
+namespace signorini::server {
+namespace {
+
+using api::DocumentWriter;
+
+/// The value, or null.
+template <typename Value>
+void member(DocumentWriter& out, std::string_view name, const std::optional<Value>& value) {
+  out.key(name);
+  if (value) {
+    out.value(*value);
+  } else {
+    out.null();
+  }
+}
+
+std::optional<std::string> text_of(const std::optional<Time>& time) {
+  return time ? std::optional(iso8601(*time)) : std::nullopt;
+}
+
+Progress progress_of(const Job& job, const LiveSolve* live) {
+  // A worker announces the end of its solve after the store has it.
+  if (live != nullptr && !has_ended(job.status)) return live->progress();
+  Progress progress;
+  if (const auto& last = job.verdict.last_iteration) {
+    progress.iteration = last->number;
+    progress.residual = residual(*last);
+  }
+  return progress;
+}
+
+void write_done(DocumentWriter& out, std::size_t done, std::size_t count) {
+  out.begin_object().member("done", done).member("count", count).end_object();
+}
+
+void write_links(DocumentWriter& out, const Job& job) {
+  const std::string self = link_to(job.id);
+  out.begin_object()
+      .member("self", self)
+      .member("events", self + "/events")
+      .member("result", self + "/result")
+      .member("vtu", self + "/result.vtu")
+      .member("contact_csv", self + "/contact.csv")
+      .member("history", self + "/history")
+      .member("history_csv", self + "/history.csv")
+      .end_object();
+}
+
+std::optional<std::string> link_to_next(const JobPage& page, const ListQuery& query) {
+  if (!page.more) return std::nullopt;
+  std::string link = "/v1/solves?limit=" + std::to_string(query.limit);
+  if (query.status) link += "&status=" + std::string(name(*query.status));
+  return link + "&after=" + page.jobs.back().id;
+}
+
+}  // namespace
+
+std::string link_to(const std::string& id) {
+  return "/v1/solves/" + id;
+}
+
+void write_progress_members(DocumentWriter& out, const Progress& progress) {
+  member(out, "phase", progress.phase ? std::optional<std::string>(name(*progress.phase)) : std::nullopt);
+  out.member("iteration", progress.iteration);
+  member(out, "residual", progress.residual);
+  if (progress.level)
+    out.key("level")
+        .begin_object()
+        .member("number", progress.level->number)
+        .member("triangles", progress.level->triangles)
+        .member("bound", progress.level->bound)
+        .member("relative", progress.level->relative)
+        .end_object();
+  if (progress.sweep > 0) write_done(out.key("sweep"), progress.swept, progress.sweep);
+  if (progress.study > 0) write_done(out.key("study"), progress.studied, progress.study);
+}
+
+void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
+  const Verdict& verdict = job.verdict;
+  out.begin_object()
+      .member("id", job.id)
+      .member("status", name(job.status))
+      .member("title", job.title)
+      .member("created_at", iso8601(job.created));
+  member(out, "started_at", text_of(job.started));
+  member(out, "finished_at", text_of(job.finished));
+  out.key("progress").begin_object();
+  write_progress_members(out, progress_of(job, live));
+  out.end_object();
+  out.key("summary");
+  if (verdict.summary) {
+    api::write_summary(out, *verdict.summary);
+  } else {
+    out.null();
+  }
+  out.key("error").json(verdict.error ? to_json(*verdict.error) : "null");
+  write_links(out.key("links"), job);
+  out.end_object();
+}
+
+void write_list(DocumentWriter& out, const JobPage& page, const ListQuery& query,
+                const Scheduler& scheduler) {
+  out.begin_object().key("solves").begin_array();
+  for (const Job& job : page.jobs) write_status(out, job, scheduler.live(job.id).get());
+  out.end_array().key("links").begin_object();
+  member(out, "next", link_to_next(page, query));
+  out.end_object().end_object();
+}
+
+void write_history_so_far(DocumentWriter& out, JobStatus status, const std::vector<Iteration>& history) {
+  out.begin_object().member("status", name(status));
+  api::write_history(out.key("history"), history);
+  out.end_object();
+}
+
+}  // namespace signorini::server

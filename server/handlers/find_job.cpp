@@ -1,0 +1,52 @@
+#include "server/handlers/find_job.hpp"
+
+#include "server/handlers/documents.hpp"
+
+namespace signorini::server {
+namespace {
+
+std::string no_result_yet(const Job& job) {
+  return "The solve is " + std::string(name(job.status)) + "; its result is there once it has ended. GET " +
+         link_to(job.id) + " shows how far it is.";
+}
+
+HttpError without_result(const Job& job) {
+  if (!has_ended(job.status)) return {409, {"not-ended", "The solve has not ended", no_result_yet(job)}};
+  const std::string why = job.verdict.error ? " " + job.verdict.error->detail : "";
+  return {410,
+          {"no-result", "The solve has no result",
+           "It ended as " + std::string(name(job.status)) + " before there was any." + why}};
+}
+
+}  // namespace
+
+const std::string& id_of(const Request& request) {
+  return request.path_parameters.at("id");
+}
+
+HttpError unknown_solve() {
+  return {404,
+          {"unknown-solve", "Unknown solve",
+           "There is no solve with this id; it may have been deleted, or dropped to keep within --keep-bytes "
+           "or --keep-seconds."}};
+}
+
+Job find_job(Service& service, const Request& request) {
+  std::optional<Job> job = service.store.find(id_of(request));
+  if (!job) throw unknown_solve();
+  return std::move(*job);
+}
+
+JobWithResult find_job_with_result(Service& service, const Request& request) {
+  Job job = find_job(service, request);
+  if (!job.verdict.summary) throw without_result(job);
+  return with_result(service, std::move(job));
+}
+
+JobWithResult with_result(Service& service, Job job) {
+  std::optional<JobResult> result = service.store.result(job.id);
+  if (!result) throw unknown_solve();
+  return {std::move(job), std::move(*result)};
+}
+
+}  // namespace signorini::server

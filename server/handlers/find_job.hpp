@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "server/handlers/service.hpp"
+#include "server/http/error.hpp"
+#include "server/http/request.hpp"
+
+namespace signorini::server {
+
+/// The id in the path.
+const std::string& id_of(const Request& request);
+
+/// 404: there is no solve with this id.
+HttpError unknown_solve();
+
+/// The job of the path. Throws HttpError 404.
+Job find_job(Service& service, const Request& request);
+
+struct JobWithResult {
+  Job job;
+  JobResult result;
+};
+
+/// The same, with a solution. Throws HttpError 404, 409 if it has not ended, 410 if it ended without one.
+JobWithResult find_job_with_result(Service& service, const Request& request);
+
+/// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile.
+JobWithResult with_result(Service& service, Job job);
+
+}  // namespace signorini::server

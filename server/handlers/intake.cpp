@@ -1,0 +1,117 @@
+#include "server/handlers/intake.hpp"
+
+#include <array>
+#include <cstdio>
+
+#include "api/cbor_document.hpp"
+#include "server/http/error.hpp"
+#include "server/http/media_type.hpp"
+#include "server/jobs/run.hpp"
+
+namespace signorini::server {
+namespace {
+
+/// CBOR is turned into the JSON text that is read, kept and answered.
+std::string json_of(const std::string& cbor, std::size_t max_bytes) {
+  if (std::optional<std::string> text = api::json_of_cbor(cbor, max_bytes)) return std::move(*text);
+  throw HttpError(413, {"body-too-large", "Body too large",
+                        "As JSON the body is longer than " + std::to_string(max_bytes) +
+                            " bytes (--max-body-bytes), which is how it is counted."});
+}
+
+/// The body as JSON text.
+std::string read_body(const Request& request, std::size_t max_bytes) {
+  const std::optional<std::string> type = request.header("Content-Type");
+  if (type && is_json(*type)) return request.read_body(max_bytes);
+  if (type && is_cbor(*type)) return json_of(request.read_body(max_bytes), max_bytes);
+  throw HttpError(
+      415,
+      {"unsupported-media-type", "Unsupported media type",
+       std::string(type ? "The body is declared as neither JSON nor CBOR."
+                        : "The request has no Content-Type.") +
+           " Send it as application/json or application/cbor: curl -H 'Content-Type: application/json'."});
+}
+
+void require_few_unknowns(const Intake& intake, const Limits& limits) {
+  const std::int64_t unknowns = intake.estimate.unknowns.stress;
+  if (unknowns <= limits.max_unknowns) return;
+  const bool grows = intake.request.problem.mesh.adaptive.has_value();
+  throw HttpError(413, {"too-many-unknowns", "The problem is too large",
+                        (grows ? "It may grow to " : "It has ") + std::to_string(unknowns) +
+                            " stress unknowns; this service takes up to " +
+                            std::to_string(limits.max_unknowns) + " (--max-unknowns). " +
+                            (grows ? "Lower mesh.adaptive.max_triangles." : "Take a coarser mesh.")});
+}
+
+std::string gigabytes(double bytes) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.3g GB", bytes / 1e9);
+  return text.data();
+}
+
+void require_little_memory(const Intake& intake, const Limits& limits) {
+  const double bytes = intake.memory();
+  if (bytes <= limits.max_memory) return;
+  throw HttpError(413, {"too-much-memory", "The problem is too large",
+                        "It would take about " + gigabytes(bytes) +
+                            " of memory; this service gives a solve up to " + gigabytes(limits.max_memory) +
+                            " (--max-memory). Take a coarser mesh or the nonconforming scheme."});
+}
+
+/// What a sweep holds are the contact unknowns of its entries.
+void require_short_sweep(const Intake& intake, const Limits& limits) {
+  const auto entries = static_cast<std::int64_t>(intake.request.sweep.size());
+  const std::int64_t unknowns = entries * intake.estimate.unknowns.contact;
+  if (unknowns <= limits.max_unknowns) return;
+  throw HttpError(
+      413,
+      {"too-many-unknowns", "The sweep is too large",
+       "Its " + std::to_string(entries) + " entries have " + std::to_string(unknowns) +
+           " contact unknowns together; this service takes up to " + std::to_string(limits.max_unknowns) +
+           " (--max-unknowns). Split the sweep: the later parts find the factor of the first."});
+}
+
+/// The runs follow each other, but their times add up.
+void require_short_study(const Intake& intake, const Limits& limits) {
+  std::int64_t unknowns = 0;
+  for (const Estimate& run : intake.runs) unknowns += run.unknowns.stress;
+  if (unknowns <= limits.max_unknowns) return;
+  const Study& study = *intake.request.study;
+  throw HttpError(
+      413,
+      {"too-many-unknowns", "The study is too large",
+       "Its " + std::to_string(study.schemes.size() * study.meshes.size()) + " runs have more than " +
+           std::to_string(limits.max_unknowns) +
+           " stress unknowns together, which is what this service takes (--max-unknowns). Leave the finest "
+           "meshes out, or lower study.adaptive.max_triangles."});
+}
+
+}  // namespace
+
+double Intake::memory() const {
+  return predicted_memory(estimate, runs);
+}
+
+Intake take_in(const Request& request, const Limits& limits) {
+  Intake intake;
+  intake.text = read_body(request, limits.max_body_bytes);
+  intake.request = api::parse_request(intake.text);
+  intake.estimate = estimate(intake.request.problem);
+  require_few_unknowns(intake, limits);
+  require_short_sweep(intake, limits);
+  if (intake.request.study)
+    intake.runs = estimate(intake.request.problem, *intake.request.study, limits.max_unknowns);
+  require_short_study(intake, limits);
+  require_little_memory(intake, limits);
+  return intake;
+}
+
+Intake take_in_study(const Request& request, const Limits& limits) {
+  Intake intake = take_in(request, limits);
+  if (!intake.request.study)
+    throw InvalidProblem(std::vector<Fault>{
+        {"/study", "is missing; it gives the meshes and schemes to solve the problem by"}});
+  return intake;
+}
+
+}  // namespace signorini::server

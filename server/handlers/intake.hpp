@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "api/problem_json.hpp"
+#include "server/handlers/service.hpp"
+#include "server/http/request.hpp"
+#include "solve.hpp"
+
+namespace signorini::server {
+
+/// A problem that was sent and may be solved here.
+struct Intake {
+  std::string text;  ///< as JSON
+  api::Request request;
+  Estimate estimate;
+  std::vector<Estimate> runs;  ///< of its study
+
+  /// Bytes that solving it will take, about: the runs of a study follow each other.
+  double memory() const;
+};
+
+/// Reads the problem in the body of a request, JSON or CBOR. Throws HttpError 415, 413 (bytes or unknowns)
+/// and 400, and what api::parse_request throws.
+Intake take_in(const Request& request, const Limits& limits);
+
+/// The same of a problem that must have a study: throws InvalidProblem if it has none.
+Intake take_in_study(const Request& request, const Limits& limits);
+
+}  // namespace signorini::server

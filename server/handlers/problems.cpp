@@ -1,0 +1,51 @@
+#include "server/handlers/problems.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "api/examples.hpp"
+#include "api/result_document.hpp"
+#include "server/handlers/document_response.hpp"
+#include "server/handlers/intake.hpp"
+#include "server/http/error.hpp"
+#include "server/http/query.hpp"
+
+namespace signorini::server {
+
+Response validate_problem(Service& service, const Request& request) {
+  allow_only(request.query, {});
+  const Intake intake = take_in(request, service.limits);
+  return document_response(request, 200,
+                           [estimate = intake.estimate, runs = intake.runs](api::DocumentWriter& out) {
+                             api::write_estimate(out, estimate, runs);
+                           });
+}
+
+Response list_examples(Service&, const Request& request) {
+  allow_only(request.query, {});
+  return document_response(request, 200, [](api::DocumentWriter& out) {
+    out.begin_object().key("examples").begin_array();
+    for (const api::Example& example : api::examples()) {
+      const std::string title = nlohmann::json::parse(example.json).value("title", "");
+      out.begin_object().member("name", example.name).member("title", title).key("links");
+      out.begin_object()
+          .member("self", "/v1/examples/" + std::string(example.name))
+          .end_object()
+          .end_object();
+    }
+    out.end_array().end_object();
+  });
+}
+
+Response get_example(Service&, const Request& request) {
+  allow_only(request.query, {});
+  const std::string& wanted = request.path_parameters.at("name");
+  for (const api::Example& example : api::examples()) {
+    if (example.name == wanted)
+      return document_response(request, 200,
+                               [&example](api::DocumentWriter& out) { out.json(example.json); });
+  }
+  throw HttpError(404, {"unknown-example", "Unknown example",
+                        "There is no example of this name; GET /v1/examples lists them."});
+}
+
+}  // namespace signorini::server

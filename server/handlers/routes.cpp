@@ -1,0 +1,52 @@
+#include "server/handlers/routes.hpp"
+
+#include "server/handlers/docs.hpp"
+#include "server/handlers/document_response.hpp"
+#include "server/handlers/downloads.hpp"
+#include "server/handlers/events.hpp"
+#include "server/handlers/health.hpp"
+#include "server/handlers/metrics.hpp"
+#include "server/handlers/pages.hpp"
+#include "server/handlers/problems.hpp"
+#include "server/handlers/solves.hpp"
+
+namespace signorini::server {
+
+Router routes(Service& service) {
+  const auto with = [&service](Response (*handle)(Service&, const Request&)) -> Handler {
+    return [&service, handle](const Request& request) { return handle(service, request); };
+  };
+  std::vector<Route> table{
+      {"POST", "/v1/solves", document_types, with(post_solve)},
+      {"GET", "/v1/solves", document_types, with(list_solves)},
+      {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
+      {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
+      {"GET", "/v1/solves/{id}/result", document_types, with(get_result)},
+      {"GET", "/v1/solves/{id}/result.vtu", {vtu_media_type}, with(get_result_vtu)},
+      {"GET", "/v1/solves/{id}/history.csv", {"text/csv"}, with(get_history_csv)},
+      {"GET", "/v1/solves/{id}/contact.csv", {"text/csv"}, with(get_contact_csv)},
+      {"GET", "/v1/solves/{id}/study.csv", {"text/csv"}, with(get_study_csv)},
+      {"GET", "/v1/solves/{id}/history", document_types, with(get_history)},
+      {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},
+      {"POST", "/v1/studies", document_types, with(post_study)},
+      {"POST", "/v1/validate", document_types, with(validate_problem)},
+      {"GET", "/v1/examples", document_types, with(list_examples)},
+      {"GET", "/v1/examples/{name}", document_types, with(get_example)},
+      // Probes send whatever Accept they like.
+      {"GET", "/healthz", {}, with(healthz), Audience::probes},
+      {"GET", "/readyz", {}, with(readyz), Audience::probes},
+      {"GET", "/metrics", {}, with(get_metrics)},
+      {"GET", "/openapi.json", {"application/json"}, with(get_openapi), Audience::everybody},
+      {"GET", "/docs", {"text/html"}, with(get_docs), Audience::everybody},
+      // Browsers ask for a style or script by what it is for, and may name neither type.
+      {"GET", "/docs/{file}", {}, with(get_docs_file), Audience::everybody},
+      {"GET", "/", {"text/html"}, with(get_start_page), Audience::everybody},
+  };
+  return {std::move(table), service.access,
+          [&metrics = service.metrics](const Request& request, const Response& response,
+                                       std::chrono::duration<double> time) {
+            metrics.replied(request, response, time);
+          }};
+}
+
+}  // namespace signorini::server

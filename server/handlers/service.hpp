@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include "server/access/access.hpp"
+#include "server/http/event_streams.hpp"
+#include "server/jobs/kept_operators.hpp"
+#include "server/jobs/scheduler.hpp"
+#include "server/jobs/store.hpp"
+#include "server/metrics/metrics.hpp"
+#include "server/unique_id.hpp"
+
+namespace signorini::server {
+
+/// What one request may ask for.
+struct Limits {
+  std::size_t max_body_bytes = 16 << 20;
+  std::int64_t max_unknowns = 20'000'000;
+  double max_memory = std::numeric_limits<double>::infinity();  ///< bytes that a solve may take
+};
+
+/// What the handlers work on.
+struct Service {
+  JobStore& store;
+  Scheduler& scheduler;
+  EventStreams& events;
+  Access& access;
+  Limits limits;
+  const KeptOperators& operators;
+  Metrics& metrics;
+  UniqueIds ids = {};
+};
+
+}  // namespace signorini::server

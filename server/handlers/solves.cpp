@@ -1,0 +1,249 @@
+#include "server/handlers/solves.hpp"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "api/result_document.hpp"
+#include "server/handlers/document_response.hpp"
+#include "server/handlers/documents.hpp"
+#include "server/handlers/find_job.hpp"
+#include "server/handlers/intake.hpp"
+#include "server/handlers/wait.hpp"
+#include "server/http/crew.hpp"
+#include "server/http/error.hpp"
+#include "server/http/query.hpp"
+#include "server/log.hpp"
+
+namespace signorini::server {
+namespace {
+
+using Header = std::pair<std::string, std::string>;
+
+HttpError unavailable(const std::string& kind, const std::string& title, const std::string& detail,
+                      const char* retry_after_seconds) {
+  return {503, {kind, title, detail}, {Header{"Retry-After", retry_after_seconds}}};
+}
+
+/// What `use` returns, its complaint about the fields turned into 400.
+template <typename Use>
+auto with_fields(const Use& use) {
+  try {
+    return use();
+  } catch (const InvalidProblem& invalid) {
+    throw bad_parameter("fields", invalid.faults().front().detail);
+  }
+}
+
+api::ResultFields fields_of(const Request& request) {
+  return with_fields(
+      [&] { return api::ResultFields::parse(parameter(request.query, "fields").value_or("")); });
+}
+
+/// Before a reply is begun: no status could follow then.
+void require_available(const api::ResultFields& fields, int components) {
+  with_fields([&] { fields.require_available(components); });
+}
+
+/// A document about the job, which lives as long as it is written: `write(out, about)`.
+template <typename Write>
+Response job_response(const Request& request, int status, JobWithResult about, const Write& write) {
+  const auto shared = std::make_shared<const JobWithResult>(std::move(about));
+  Response response =
+      document_response(request, status, [shared, write](api::DocumentWriter& out) { write(out, *shared); });
+  response.job = shared->job.id;
+  return response;
+}
+
+Response status_response(Service& service, const Request& request, int status, Job job) {
+  const auto live = service.scheduler.live(job.id);
+  return job_response(request, status, {std::move(job), {}},
+                      [live](api::DocumentWriter& out, const JobWithResult& about) {
+                        write_status(out, about.job, live.get());
+                      });
+}
+
+Response result_response(const Request& request, JobWithResult ended, const api::ResultFields& fields) {
+  return job_response(request, 200, std::move(ended),
+                      [fields](api::DocumentWriter& out, const JobWithResult& solved) {
+                        const auto& [job, result] = solved;
+                        const api::ResultHead head{job.id, name(job.status), *result.problem};
+                        api::write_result(out, head, *result.solution, fields);
+                      });
+}
+
+HttpError key_reused(const std::string& key, const KeyReused& reused) {
+  return {422,
+          {"idempotency-key-reused", "The idempotency key belongs to another problem",
+           "The Idempotency-Key `" + key + "` came with another body before; its solve is " +
+               link_to(reused.job) + ". Take a new key for a new problem."}};
+}
+
+/// Queues the problem and returns the id of its job, or of the earlier one with the same key and problem.
+std::string submit(Service& service, const Request& request, Intake intake,
+                   const std::optional<std::string>& key) {
+  NewJob job;
+  job.id = service.ids.next();
+  job.title = std::move(intake.request.title);
+  job.created = std::chrono::system_clock::now();
+  job.problem = std::make_shared<const std::string>(std::move(intake.text));
+  job.key = key;
+  job.predicted_memory = intake.memory();
+  if (request.trace) job.trace = request.trace->id;
+  try {
+    return service.scheduler.submit(std::move(job));
+  } catch (const QueueFull& full) {
+    throw unavailable("queue-full", "The queue is full",
+                      std::to_string(full.limit) + " solves are waiting, which is the limit (--queue-limit).",
+                      "5");
+  } catch (const MemoryFull& full) {
+    throw unavailable("memory-full", "The memory is spoken for", full.what(), "10");
+  } catch (const Stopping&) {
+    throw unavailable("stopping", "The service is stopping", "It takes no more solves.", "10");
+  } catch (const KeyReused& reused) {
+    throw key_reused(*key, reused);
+  }
+}
+
+/// The key by which a client may send its request again without solving the problem twice. Throws HttpError
+/// 400.
+std::optional<std::string> idempotency_key(const Request& request) {
+  constexpr std::size_t longest = 255;
+  const std::optional<std::string> key = request.header("Idempotency-Key");
+  const bool visible =
+      !key || std::all_of(key->begin(), key->end(), [](char c) { return c > ' ' && c <= '~'; });
+  if (key && (key->empty() || key->size() > longest || !visible)) {
+    throw HttpError(400, {"bad-idempotency-key", "Bad Idempotency-Key",
+                          "An Idempotency-Key is one of 1 to 255 visible ASCII characters, such as a UUID."});
+  }
+  return key;
+}
+
+/// The reply to a client that waited for its solve.
+Response answer_after_wait(Service& service, const Request& request, Job job,
+                           const api::ResultFields& fields) {
+  if (!has_ended(job.status)) return status_response(service, request, 202, std::move(job));
+  if (!job.verdict.summary) return status_response(service, request, 200, std::move(job));
+  return result_response(request, with_result(service, std::move(job)), fields);
+}
+
+/// The job when it has ended or the time is over. A client that leaves before takes its solve along if it
+/// said so.
+std::optional<Job> wait_for(Service& service, const Request& request, const std::string& id,
+                            const Wait& wait) {
+  const Crew::Rest rest;
+  if (!wait.or_cancel) return service.scheduler.wait(id, wait.time);
+  std::optional<Job> job = service.scheduler.wait(id, wait.time, request.client_left);
+  if (job && !has_ended(job->status) && request.client_left()) {
+    const LogField field("job", id);
+    spdlog::info("the client left");
+    service.scheduler.cancel(id);
+  }
+  return job;
+}
+
+JobStatus status_of_name(const std::string& status_name) {
+  if (const std::optional<JobStatus> status = job_status(status_name)) return *status;
+  throw bad_parameter("status",
+                      "`status` must be one of `queued`, `running`, `succeeded`, `failed`, `cancelled`.");
+}
+
+ListQuery list_query(const Request& request) {
+  allow_only(request.query, {"status", "limit", "after"});
+  ListQuery query;
+  if (const auto status = parameter(request.query, "status")) query.status = status_of_name(*status);
+  if (const auto limit = integer_parameter(request.query, "limit", 1, 1000)) {
+    query.limit = static_cast<std::size_t>(*limit);
+  }
+  query.after = parameter(request.query, "after");
+  if (query.after && !is_unique_id(*query.after)) {
+    throw bad_parameter("after", "`after` must be the id of a solve, as `links.next` of a page has it.");
+  }
+  return query;
+}
+
+/// Takes a problem in by one of the functions of intake.hpp, queues it and answers.
+Response accept(Service& service, const Request& request,
+                Intake (*take)(const Request& request, const Limits& limits)) {
+  allow_only(request.query, {"wait", "cancel", "fields"});
+  const api::ResultFields fields = fields_of(request);
+  const std::optional<Wait> wait = wait_of(request);
+  const std::optional<std::string> key = idempotency_key(request);
+  Intake intake = take(request, service.limits);
+  require_available(fields, components(intake.request.problem.material));
+  const std::string id = submit(service, request, std::move(intake), key);
+
+  std::optional<Job> job = wait ? wait_for(service, request, id, *wait) : service.store.find(id);
+  if (!job)
+    throw HttpError(410, {"deleted", "The solve was deleted", "It was deleted before it could be answered."});
+  Response response = wait ? answer_after_wait(service, request, std::move(*job), fields)
+                           : status_response(service, request, 202, std::move(*job));
+  response.headers.emplace_back("Location", link_to(id));
+  if (wait && wait->preferred) response.headers.emplace_back("Preference-Applied", *wait->preferred);
+  return response;
+}
+
+}  // namespace
+
+Response post_solve(Service& service, const Request& request) {
+  return accept(service, request, take_in);
+}
+
+Response post_study(Service& service, const Request& request) {
+  return accept(service, request, take_in_study);
+}
+
+Response list_solves(Service& service, const Request& request) {
+  const ListQuery query = list_query(request);
+  return document_response(request, 200,
+                           [&scheduler = service.scheduler, page = service.store.list(query),
+                            query](api::DocumentWriter& out) { write_list(out, page, query, scheduler); });
+}
+
+Response get_solve(Service& service, const Request& request) {
+  allow_only(request.query, {});
+  return status_response(service, request, 200, find_job(service, request));
+}
+
+Response get_result(Service& service, const Request& request) {
+  allow_only(request.query, {"fields"});
+  const api::ResultFields fields = fields_of(request);
+  JobWithResult ended = find_job_with_result(service, request);
+  require_available(fields, ended.result.solution->components);
+  return result_response(request, std::move(ended), fields);
+}
+
+Response get_history(Service& service, const Request& request) {
+  allow_only(request.query, {});
+  // Asked before the job: a solve that ends in between is then found as ended, with its whole history.
+  const auto live = service.scheduler.live(id_of(request));
+  Job job = find_job(service, request);
+  JobWithResult iterated =
+      has_ended(job.status) ? with_result(service, std::move(job)) : JobWithResult{std::move(job), {}};
+  if (!iterated.result.history && live) {
+    iterated.result.history = std::make_shared<const std::vector<Iteration>>(live->history());
+  }
+  return job_response(
+      request, 200, std::move(iterated), [](api::DocumentWriter& out, const JobWithResult& about) {
+        const auto& history = about.result.history;
+        write_history_so_far(out, about.job.status, history ? *history : std::vector<Iteration>());
+      });
+}
+
+Response delete_solve(Service& service, const Request& request) {
+  allow_only(request.query, {});
+  Response response = Response::empty(204);
+  response.job = id_of(request);
+  switch (service.scheduler.dismiss(id_of(request))) {
+    case Dismissal::unknown:
+      throw unknown_solve();
+    case Dismissal::removed:
+      return response;
+    case Dismissal::cancelled:
+    case Dismissal::cancelling:
+      return status_response(service, request, 202, find_job(service, request));
+  }
+  return response;
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,77 @@
+#include "server/http/crew.hpp"
+
+#include <utility>
+
+namespace signorini::server {
+namespace {
+
+thread_local Crew* own_crew = nullptr;
+
+}  // namespace
+
+Crew::Crew(std::size_t threads, std::size_t at_work) : most_at_work_(at_work) {
+  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back(&Crew::work, this);
+}
+
+Crew::~Crew() {
+  shutdown();
+}
+
+void Crew::enqueue(std::function<void()> task) {
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+  }
+  may_work_.notify_one();
+}
+
+void Crew::shutdown() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  may_work_.notify_all();
+  for (std::thread& thread : std::exchange(threads_, {})) thread.join();
+}
+
+void Crew::work() {
+  own_crew = this;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    may_work_.wait(lock, [this] { return tasks_.empty() ? ending_ : at_work_ < most_at_work_; });
+    if (tasks_.empty()) return;
+    std::function<void()> task = std::move(tasks_.front());
+    tasks_.pop_front();
+    ++at_work_;
+    lock.unlock();
+    task();
+    task = nullptr;
+    lock.lock();
+    --at_work_;
+    if (ending_ && tasks_.empty()) may_work_.notify_all();
+  }
+}
+
+void Crew::leave_work() {
+  {
+    const std::lock_guard lock(mutex_);
+    --at_work_;
+  }
+  may_work_.notify_one();
+}
+
+/// At once, even if more are at work then: a task that was begun is to end.
+void Crew::return_to_work() {
+  const std::lock_guard lock(mutex_);
+  ++at_work_;
+}
+
+Crew::Rest::Rest() {
+  if (own_crew != nullptr) own_crew->leave_work();
+}
+
+Crew::Rest::~Rest() {
+  if (own_crew != nullptr) own_crew->return_to_work();
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,121 @@
+#include "server/http/media_type.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <vector>
+
+namespace signorini::server {
+namespace {
+
+std::string trimmed_lower(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  std::string trimmed(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+  std::transform(trimmed.begin(), trimmed.end(), trimmed.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return trimmed;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> pieces;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    pieces.push_back(trimmed_lower(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return pieces;
+}
+
+/// One element of an Accept or Accept-Encoding list; the weight is 1 unless it says `q=`.
+struct Weighted {
+  std::string name;
+  double weight = 1;
+};
+
+std::vector<Weighted> weighted_list(std::string_view header) {
+  std::vector<Weighted> list;
+  for (const std::string& element : split(header, ',')) {
+    const std::vector<std::string> pieces = split(element, ';');
+    if (pieces.front().empty()) continue;
+    Weighted weighted{pieces.front()};
+    for (std::size_t i = 1; i < pieces.size(); ++i) {
+      if (pieces[i].starts_with("q=")) weighted.weight = std::strtod(pieces[i].c_str() + 2, nullptr);
+    }
+    list.push_back(weighted);
+  }
+  return list;
+}
+
+/// 3 for the type itself, 2 for `type/*`, 1 for `*/*`, 0 for no match.
+int specificity(const std::string& range, const std::string& media_type) {
+  if (range == media_type) return 3;
+  if (range == media_type.substr(0, media_type.find('/')) + "/*") return 2;
+  return range == "*/*" ? 1 : 0;
+}
+
+/// What a client thinks of a media type; compares as it prefers.
+struct Rank {
+  double weight = 0;  ///< of the most specific range that holds the type; 0 if it is not taken
+  int specificity = 0;
+
+  auto operator<=>(const Rank&) const = default;
+};
+
+Rank rank_of(const std::string& media_type, const std::vector<Weighted>& ranges) {
+  Rank rank;
+  for (const Weighted& range : ranges) {
+    const int found = specificity(range.name, media_type);
+    if (found > rank.specificity) rank = {range.weight, found};
+  }
+  return rank;
+}
+
+std::optional<double> weight_of_coding(std::string_view coding, const std::vector<Weighted>& codings) {
+  const auto found = std::find_if(codings.begin(), codings.end(),
+                                  [&](const Weighted& element) { return element.name == coding; });
+  return found == codings.end() ? std::nullopt : std::optional(found->weight);
+}
+
+/// Whether the media type is `application/` and the format, or a type that is written in it (RFC
+/// 6838, 4.2.8).
+bool is_application(std::string_view content_type, const std::string& format) {
+  const std::string essence = split(content_type, ';').front();
+  return essence == "application/" + format ||
+         (essence.starts_with("application/") && essence.ends_with("+" + format));
+}
+
+}  // namespace
+
+bool is_json(std::string_view content_type) {
+  return is_application(content_type, "json");
+}
+
+bool is_cbor(std::string_view content_type) {
+  return is_application(content_type, "cbor");
+}
+
+std::optional<std::string> preferred(const std::optional<std::string>& accept,
+                                     const std::vector<std::string>& media_types) {
+  if (!accept) return media_types.front();
+  const std::vector<Weighted> ranges = weighted_list(*accept);
+  std::optional<std::string> best;
+  Rank best_rank;
+  for (const std::string& media_type : media_types) {
+    const Rank rank = rank_of(media_type, ranges);
+    if (rank.weight > 0 && rank > best_rank) {
+      best = media_type;
+      best_rank = rank;
+    }
+  }
+  return best;
+}
+
+bool accepts_coding(std::string_view accept_encoding, std::string_view coding) {
+  const std::vector<Weighted> codings = weighted_list(accept_encoding);
+  const double weight =
+      weight_of_coding(coding, codings).value_or(weight_of_coding("*", codings).value_or(0));
+  return weight > 0 && weight >= weight_of_coding("identity", codings).value_or(0);
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http/error.hpp"
+#include "server/http/request.hpp"
+
+namespace signorini::server {
+
+/// Refuses every query parameter that is not among the allowed ones or stands twice: 400.
+void allow_only(const Query& query, std::initializer_list<std::string_view> allowed);
+
+std::optional<std::string> parameter(const Query& query, const std::string& name);
+
+/// A number within [low, high], else 400.
+std::optional<double> number_parameter(const Query& query, const std::string& name, double low, double high);
+std::optional<long> integer_parameter(const Query& query, const std::string& name, long low, long high);
+
+/// 400 that names the parameter and what it may be.
+HttpError bad_parameter(const std::string& name, const std::string& detail);
+
+}  // namespace signorini::server

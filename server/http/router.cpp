@@ -1,0 +1,96 @@
+#include "server/http/router.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "server/http/error.hpp"
+#include "server/http/media_type.hpp"
+
+namespace signorini::server {
+namespace {
+
+using PathParameters = std::map<std::string, std::string>;
+
+/// Takes the text up to the next slash off the path.
+std::string_view next_segment(std::string_view& path) {
+  const std::size_t slash = std::min(path.find('/'), path.size());
+  const std::string_view segment = path.substr(0, slash);
+  path.remove_prefix(std::min(slash + 1, path.size()));
+  return segment;
+}
+
+std::size_t segments(std::string_view path) {
+  std::size_t count = 1;
+  for (const char c : path) count += c == '/';
+  return count;
+}
+
+std::optional<PathParameters> match(std::string_view pattern, std::string_view path) {
+  if (segments(pattern) != segments(path)) return std::nullopt;
+  PathParameters parameters;
+  for (std::size_t left = segments(pattern); left > 0; --left) {
+    const std::string_view expected = next_segment(pattern);
+    const std::string_view actual = next_segment(path);
+    if (expected.starts_with('{')) {
+      parameters.emplace(expected.substr(1, expected.size() - 2), actual);
+    } else if (expected != actual) {
+      return std::nullopt;
+    }
+  }
+  return parameters;
+}
+
+HttpError not_acceptable(const Route& route) {
+  std::string list;
+  for (const std::string& media_type : route.media_types) list += (list.empty() ? "" : " or ") + media_type;
+  return {406,
+          {"not-acceptable", "Not acceptable",
+           "This path answers with " + list + ", which the Accept header excludes."}};
+}
+
+/// The media type of the reply. Throws HttpError 406.
+std::string negotiate(const Request& request, const Route& route) {
+  if (route.media_types.empty()) return {};
+  if (auto media_type = preferred(request.header("Accept"), route.media_types)) return *media_type;
+  throw not_acceptable(route);
+}
+
+HttpError method_not_allowed(const std::string& method, const std::string& allow) {
+  return {
+      405,
+      {"method-not-allowed", "Method not allowed", method + " is not for this path; allowed: " + allow + "."},
+      {{"Allow", allow}}};
+}
+
+}  // namespace
+
+bool Router::is_for_probes(std::string_view path) const {
+  return std::ranges::any_of(routes_, [&](const Route& route) {
+    return route.audience == Audience::probes && route.pattern == path;
+  });
+}
+
+Response Router::route(Request& request) const {
+  const std::string method = request.method == "HEAD" ? "GET" : request.method;
+  const Route* found = nullptr;
+  std::string allow;
+  for (const Route& route : routes_) {
+    std::optional<PathParameters> parameters = match(route.pattern, request.path);
+    if (!parameters) continue;
+    request.route = route.pattern;
+    allow += (allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
+    if (found != nullptr || route.method != method) continue;
+    found = &route;
+    request.path_parameters = std::move(*parameters);
+  }
+  const Audience audience = found == nullptr ? Audience::clients : found->audience;
+  if (audience != Audience::probes) access_.count(request);
+  if (!allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(allow);
+  if (audience == Audience::clients) access_.require_token(request);
+  if (allow.empty()) throw HttpError(404, details_of_status(404));
+  if (found == nullptr) throw method_not_allowed(request.method, allow);
+  request.reply_type = negotiate(request, *found);
+  return found->handler(request);
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/access/access.hpp"
+#include "server/http/request.hpp"
+#include "server/http/response.hpp"
+
+namespace signorini::server {
+
+using Handler = std::function<Response(const Request&)>;
+
+/// Whom a route is for: clients show a token if the service wants one; nobody counts how often probes ask.
+enum class Audience { clients, everybody, probes };
+
+/// One line of the route table.
+struct Route {
+  std::string method;
+  std::string pattern;                   ///< e.g. `/v1/solves/{id}/result`
+  std::vector<std::string> media_types;  ///< of the reply; 406 if the client takes none; empty: not asked
+  Handler handler;
+  Audience audience = Audience::clients;
+};
+
+/// Told of every reply once it is made, those included that no route has given.
+using ReplyObserver =
+    std::function<void(const Request& request, const Response& response, std::chrono::duration<double> time)>;
+
+/// The route table.
+class Router {
+ public:
+  Router(
+      std::vector<Route> routes, Access& access, ReplyObserver observer = [](auto&&...) {})
+      : routes_(std::move(routes)), access_(access), observer_(std::move(observer)) {}
+
+  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 401, 404, 405 (with
+  /// Allow) and 406.
+  Response route(Request& request) const;
+
+  /// Whether a path is for probes.
+  bool is_for_probes(std::string_view path) const;
+
+  /// Tells browsers which pages may read the reply.
+  void mark(const Request& request, Response& response) const { access_.cors.mark(request, response); }
+
+  const std::vector<Route>& table() const { return routes_; }
+
+  void replied(const Request& request, const Response& response, std::chrono::duration<double> time) const {
+    observer_(request, response, time);
+  }
+
+ private:
+  std::vector<Route> routes_;
+  Access& access_;
+  ReplyObserver observer_;
+};
+
+}  // namespace signorini::server

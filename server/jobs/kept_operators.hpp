@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <list>
+#include <mutex>
+#include <string_view>
+#include <unordered_map>
+
+#include "contact/operator.hpp"
+
+namespace signorini::server {
+
+/// What the kept operators have been good for, since the start of the service; and what they hold now.
+struct OperatorFigures {
+  std::uint64_t hits = 0;
+  std::uint64_t misses = 0;
+  std::uint64_t evictions = 0;
+  std::size_t operators = 0;
+  std::size_t bytes = 0;
+};
+
+/// The operators of recent solves, shared by all workers (`--cache-bytes`). When they hold more than the limit
+/// together, those that have not been used for the longest time are dropped; one that is larger than the limit is
+/// not kept at all.
+class KeptOperators : public OperatorCache {
+ public:
+  explicit KeptOperators(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}
+
+  std::shared_ptr<const Operator> find(const std::string& key) override;
+  void keep(const std::string& key, std::shared_ptr<const Operator> made) override;
+
+  OperatorFigures figures() const;
+
+ private:
+  struct Entry {
+    std::string key;
+    std::shared_ptr<const Operator> kept;
+    std::size_t bytes;
+  };
+  using Entries = std::list<Entry>;
+
+  const std::size_t limit_bytes_;
+  mutable std::mutex mutex_;
+  Entries entries_;                                                 ///< the one used last comes first
+  std::unordered_map<std::string_view, Entries::iterator> by_key_;  ///< views of the entries' keys
+  OperatorFigures figures_;
+};
+
+}  // namespace signorini::server

@@ -1,0 +1,68 @@
+#include "server/jobs/live_solve.hpp"
+
+#include <algorithm>
+
+namespace signorini::server {
+
+double residual(const Iteration& iteration) {
+  if (iteration.displacement_change) return *iteration.displacement_change;
+  return std::max({iteration.penetration, iteration.tension, iteration.complementarity});
+}
+
+void LiveSolve::entered(Phase phase) {
+  const std::lock_guard lock(mutex_);
+  phase_ = phase;
+}
+
+void LiveSolve::iterated(const Iteration& iteration) {
+  const std::lock_guard lock(mutex_);
+  history_.push_back(iteration);
+}
+
+void LiveSolve::refined(const Level& level, const Solution&) {
+  const std::lock_guard lock(mutex_);
+  level_ = level;
+}
+
+void LiveSolve::swept(std::size_t done, std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  swept_ = done;
+  sweep_ = count;
+}
+
+void LiveSolve::studied(std::size_t done, std::size_t count) {
+  const std::lock_guard lock(mutex_);
+  studied_ = done;
+  study_ = count;
+}
+
+Progress LiveSolve::progress() const {
+  const std::lock_guard lock(mutex_);
+  Progress progress;
+  progress.phase = phase_;
+  progress.level = level_;
+  progress.swept = swept_;
+  progress.sweep = sweep_;
+  progress.studied = studied_;
+  progress.study = study_;
+  if (!history_.empty()) {
+    progress.iteration = history_.back().number;
+    progress.residual = residual(history_.back());
+  }
+  return progress;
+}
+
+std::vector<Iteration> LiveSolve::history() const {
+  const std::lock_guard lock(mutex_);
+  return history_;
+}
+
+std::vector<Iteration> LiveSolve::history_after(std::size_t first, std::size_t most) const {
+  const std::lock_guard lock(mutex_);
+  const std::size_t begin = std::min(first, history_.size());
+  const std::size_t end = begin + std::min(most, history_.size() - begin);
+  return {history_.begin() + static_cast<std::ptrdiff_t>(begin),
+          history_.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+}  // namespace signorini::server

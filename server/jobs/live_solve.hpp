@@ -1,0 +1,62 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "observer.hpp"
+#include "server/jobs/job.hpp"
+
+namespace signorini::server {
+
+/// How far a solve is.
+struct Progress {
+  std::optional<Phase> phase;
+  int iteration = 0;
+  std::optional<double> residual;    ///< relative; see residual()
+  std::optional<Level> level;        ///< the last mesh that was solved, of one that refines itself
+  std::size_t swept = 0, sweep = 0;  ///< entries of a sweep that are done, and all of them
+  std::size_t studied = 0, study = 0;  ///< the same for the runs of a study
+};
+
+/// The residual by which the method stops: the paper's criterion in its form, else the largest of the
+/// relative contact residuals.
+double residual(const Iteration& iteration);
+
+/// A solve that runs: written by its worker, read by everybody.
+class LiveSolve : public Observer {
+ public:
+  explicit LiveSolve(Time started) : started_(started) {}
+
+  void entered(Phase phase) override;
+  void iterated(const Iteration& iteration) override;
+  void refined(const Level& level, const Solution& solution) override;
+  void swept(std::size_t done, std::size_t count) override;
+  void studied(std::size_t done, std::size_t count) override;
+  bool keep_going() override { return !cancelled_; }
+
+  void cancel() { cancelled_ = true; }
+
+  Progress progress() const;
+  std::vector<Iteration> history() const;
+  /// At most so many iterations after the first ones.
+  std::vector<Iteration> history_after(std::size_t first, std::size_t most) const;
+
+  /// When it was started, which tells it from another solve of the same job.
+  Time started() const { return started_; }
+
+ private:
+  const Time started_;
+  std::atomic<bool> cancelled_ = false;
+  mutable std::mutex mutex_;
+  std::optional<Phase> phase_;
+  std::optional<Level> level_;
+  std::vector<Iteration> history_;
+  std::size_t swept_ = 0, sweep_ = 0;
+  std::size_t studied_ = 0, study_ = 0;
+};
+
+}  // namespace signorini::server

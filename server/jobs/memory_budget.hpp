@@ -1,0 +1,40 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::server {
+
+/// The memory that solves may take is spoken for; the text says by what.
+class MemoryFull : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the solves that may run at the same time are predicted to take: the largest ones of those that were
+/// admitted and have not ended, as many as there are workers.
+class MemoryBudget {
+ public:
+  MemoryBudget(double max_bytes, std::size_t workers) : max_bytes_(max_bytes), workers_(workers) {}
+
+  /// Throws MemoryFull if the job could come to run with others that leave too little.
+  void admit(const std::string& job, double bytes);
+
+  /// Counts a job that was admitted elsewhere.
+  void add(const std::string& job, double bytes);
+
+  bool knows(const std::string& job) const;
+  void release(const std::string& job);
+
+ private:
+  double largest() const;
+
+  const double max_bytes_;
+  const std::size_t workers_;
+  mutable std::mutex mutex_;
+  std::map<std::string, double> bytes_;  ///< by job
+};
+
+}  // namespace signorini::server

@@ -1,0 +1,173 @@
+#include "server/jobs/memory_store.hpp"
+
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include "server/log.hpp"
+
+namespace signorini::server {
+
+MemoryStore::MemoryStore(const StoreLimits& limits) : limits_(limits) {}
+
+std::string MemoryStore::add(NewJob job) {
+  const std::lock_guard lock(mutex_);
+  if (job.key) {
+    const auto earlier = keys_.find(*job.key);
+    if (earlier != keys_.end()) {
+      if (*entries_.at(earlier->second).result.problem == *job.problem) return earlier->second;
+      throw KeyReused(earlier->second);
+    }
+  }
+  if (queue_.size() >= limits_.queue) throw QueueFull(limits_.queue);
+  if (job.key) keys_[*job.key] = job.id;
+  queue_.push_back(job.id);
+  Entry& entry = entries_[job.id];
+  entry.job.id = std::move(job.id);
+  entry.job.title = std::move(job.title);
+  entry.job.trace = std::move(job.trace);
+  entry.job.created = job.created;
+  entry.result.problem = std::move(job.problem);
+  entry.key = std::move(job.key);
+  return entry.job.id;
+}
+
+std::optional<Claim> MemoryStore::claim() {
+  const std::lock_guard lock(mutex_);
+  if (queue_.empty()) return std::nullopt;
+  Entry& entry = entries_.at(queue_.front());
+  queue_.pop_front();
+  entry.job.status = JobStatus::running;
+  entry.job.started = std::chrono::system_clock::now();
+  return Claim{entry.job, entry.result.problem, ++entry.attempt};
+}
+
+bool MemoryStore::finish(const Claim& claim, const Ending& ending) {
+  Removed removed;
+  const std::lock_guard lock(mutex_);
+  Entry* const entry = running(claim);
+  if (entry == nullptr) return false;
+  end(*entry, ending, removed);
+  return true;
+}
+
+bool MemoryStore::give_back(const Claim& claim) {
+  const std::lock_guard lock(mutex_);
+  Entry* const entry = running(claim);
+  if (entry == nullptr || entry->cancel_asked) return false;
+  entry->job.status = JobStatus::queued;
+  entry->job.started.reset();
+  queue_.insert(std::lower_bound(queue_.begin(), queue_.end(), claim.job.id), claim.job.id);
+  return true;
+}
+
+Cancellation MemoryStore::cancel(const std::string& id) {
+  Removed removed;
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(id);
+  if (found == entries_.end() || has_ended(found->second.job.status)) return Cancellation::none;
+  Entry& entry = found->second;
+  if (entry.job.status == JobStatus::running) {
+    entry.cancel_asked = true;
+    return Cancellation::asked;
+  }
+  queue_.erase(std::find(queue_.begin(), queue_.end(), id));
+  end(entry, cancelled_ending("The solve was cancelled before it began."), removed);
+  return Cancellation::ended;
+}
+
+bool MemoryStore::remove_ended(const std::string& id) {
+  Removed removed;
+  const std::lock_guard lock(mutex_);
+  const auto place = std::find(ended_.begin(), ended_.end(), id);
+  if (place == ended_.end()) return false;
+  ended_.erase(place);
+  remove(id, removed);
+  return true;
+}
+
+void MemoryStore::drop_expired() {
+  Removed removed;
+  const std::lock_guard lock(mutex_);
+  drop_beyond_limits(removed);
+}
+
+std::optional<Job> MemoryStore::find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(id);
+  if (found == entries_.end()) return std::nullopt;
+  return found->second.job;
+}
+
+JobPage MemoryStore::list(const ListQuery& query) const {
+  const std::lock_guard lock(mutex_);
+  JobPage page;
+  auto next = std::make_reverse_iterator(query.after ? entries_.lower_bound(*query.after) : entries_.end());
+  for (; next != entries_.rend(); ++next) {
+    const Job& job = next->second.job;
+    if (query.status && job.status != *query.status) continue;
+    if (page.jobs.size() == query.limit) {
+      page.more = true;
+      break;
+    }
+    page.jobs.push_back(job);
+  }
+  return page;
+}
+
+JobCounts MemoryStore::count() const {
+  const std::lock_guard lock(mutex_);
+  JobCounts counts;
+  for (const auto& [id, entry] : entries_) ++counts[entry.job.status];
+  return counts;
+}
+
+std::optional<JobResult> MemoryStore::result(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(id);
+  if (found == entries_.end()) return std::nullopt;
+  return found->second.result;
+}
+
+MemoryStore::Entry* MemoryStore::running(const Claim& claim) {
+  const auto found = entries_.find(claim.job.id);
+  if (found == entries_.end()) return nullptr;
+  Entry& entry = found->second;
+  return entry.attempt == claim.attempt && entry.job.status == JobStatus::running ? &entry : nullptr;
+}
+
+void MemoryStore::end(Entry& entry, const Ending& ending, Removed& removed) {
+  entry.job.status = ending.status;
+  entry.job.finished = std::chrono::system_clock::now();
+  entry.job.verdict = verdict_of(ending);
+  entry.result.solution = ending.solution;
+  entry.result.history = ending.history;
+  entry.bytes = sizeof(Entry) + memory_of(entry.result);
+  ended_bytes_ += entry.bytes;
+  ended_.push_back(entry.job.id);
+  drop_beyond_limits(removed);
+}
+
+void MemoryStore::drop_beyond_limits(Removed& removed) {
+  const Time oldest = std::chrono::system_clock::now() - limits_.keep;
+  while (!ended_.empty() && entries_.at(ended_.front()).job.finished < oldest) {
+    drop_oldest_ended("--keep-seconds", removed);
+  }
+  while (ended_bytes_ > limits_.keep_bytes && ended_.size() > 1) drop_oldest_ended("--keep-bytes", removed);
+}
+
+void MemoryStore::drop_oldest_ended(const char* flag, Removed& removed) {
+  remove(ended_.front(), removed);
+  const LogField job("job", ended_.front());
+  spdlog::info("dropped bytes={} kept_bytes={} ({})", removed.back().mapped().bytes, ended_bytes_, flag);
+  ended_.pop_front();
+}
+
+void MemoryStore::remove(const std::string& id, Removed& removed) {
+  removed.push_back(entries_.extract(id));
+  const Entry& entry = removed.back().mapped();
+  ended_bytes_ -= entry.bytes;
+  if (entry.key) keys_.erase(*entry.key);
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <mutex>
+
+#include "server/jobs/store.hpp"
+
+namespace signorini::server {
+
+/// Jobs in memory: `--data-dir :memory:`. What has ended is counted with the memory that it holds.
+class MemoryStore : public JobStore {
+ public:
+  explicit MemoryStore(const StoreLimits& limits);
+
+  std::string add(NewJob job) override;
+  std::optional<Claim> claim() override;
+  bool finish(const Claim& claim, const Ending& ending) override;
+  bool give_back(const Claim& claim) override;
+  Cancellation cancel(const std::string& id) override;
+  bool remove_ended(const std::string& id) override;
+  void drop_expired() override;
+  std::optional<Job> find(const std::string& id) const override;
+  JobPage list(const ListQuery& query) const override;
+  JobCounts count() const override;
+  std::optional<JobResult> result(const std::string& id) const override;
+  std::optional<std::string> trouble() override { return std::nullopt; }
+  bool outlives_process() const override { return false; }
+
+ private:
+  struct Entry {
+    Job job;
+    JobResult result;
+    std::optional<std::string> key;
+    std::uint64_t attempt = 0;
+    bool cancel_asked = false;
+    std::size_t bytes = 0;  ///< counted when the job ended
+  };
+  using Entries = std::map<std::string, Entry>;
+
+  /// Jobs that no longer stand in the map; their memory is freed after the lock is.
+  using Removed = std::vector<Entries::node_type>;
+
+  Entry* running(const Claim& claim);
+  void end(Entry& entry, const Ending& ending, Removed& removed);
+  void drop_beyond_limits(Removed& removed);
+  void drop_oldest_ended(const char* flag, Removed& removed);
+  void remove(const std::string& id, Removed& removed);
+
+  const StoreLimits limits_;
+
+  mutable std::mutex mutex_;
+  Entries entries_;                          ///< by id, which is by age
+  std::deque<std::string> queue_;            ///< ids, next first
+  std::deque<std::string> ended_;            ///< ids in the order in which they ended
+  std::map<std::string, std::string> keys_;  ///< the id of the job with this key
+  std::size_t ended_bytes_ = 0;
+};
+
+}  // namespace signorini::server

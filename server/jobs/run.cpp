@@ -1,0 +1,105 @@
+#include "server/jobs/run.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "server/failure.hpp"
+#include "solve.hpp"
+#include "study.hpp"
+
+namespace signorini::server {
+namespace {
+
+ProblemDetails details_of(const Summary& summary) {
+  switch (summary.outcome) {
+    case Outcome::cancelled:
+      return {"cancelled", "The solve was cancelled", summary.advice};
+    case Outcome::tolerance_not_met:
+      return {"tolerance-not-met", "The error bound does not meet the tolerance", summary.advice};
+    case Outcome::diverged:
+      return {"diverged", "The method did not converge", summary.advice};
+    default:
+      return {"not-converged", "The method did not converge", summary.advice};
+  }
+}
+
+JobStatus status_of(Outcome outcome) {
+  if (outcome == Outcome::converged) return JobStatus::succeeded;
+  return outcome == Outcome::cancelled ? JobStatus::cancelled : JobStatus::failed;
+}
+
+Ending failed(std::exception_ptr error, const LiveSolve& live) {
+  Ending ending;
+  ending.status = JobStatus::failed;
+  ending.error = describe(error).details;
+  ending.history = std::make_shared<const std::vector<Iteration>>(live.history());
+  return ending;
+}
+
+ProblemDetails incomplete(const std::vector<StudyRow>& study) {
+  const auto is_solved = [](const StudyRow& row) { return row.error.empty(); };
+  const auto first = std::ranges::find_if_not(study, is_solved);
+  const auto failures = std::count_if(first, study.end(), std::not_fn(is_solved));
+  return {"study-incomplete", "Not every run of the study was solved",
+          std::to_string(failures) + " of " + std::to_string(study.size()) +
+              " rows have no solution, first " + first->error};
+}
+
+ProblemDetails incomplete(const std::vector<SweepEntry>& sweep) {
+  const auto first = std::ranges::find_if_not(sweep, is_solved);
+  const auto failures =
+      std::count_if(first, sweep.end(), [](const auto& entry) { return !is_solved(entry); });
+  return {"sweep-incomplete", "Not every entry of the sweep was solved",
+          std::to_string(failures) + " of " + std::to_string(sweep.size()) +
+              " entries have no converged solution, first /sweep/" + std::to_string(first - sweep.begin()) +
+              ": " + (first->error.empty() ? first->advice : first->error)};
+}
+
+}  // namespace
+
+Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators) {
+  Solution solution = solve(request.problem, request.sweep, request.settings, observer, operators);
+  if (request.study && observer.keep_going())
+    solution.study = run_study(request.problem, *request.study, request.settings, observer,
+                               solution.summary.timings.total);
+  return solution;
+}
+
+double predicted_memory(const Estimate& problem, const std::vector<Estimate>& runs) {
+  double bytes = problem.memory_bytes;
+  for (const Estimate& run : runs) bytes = std::max(bytes, run.memory_bytes);
+  return bytes;
+}
+
+Ending ending_of(Solution solution) {
+  const auto shared = std::make_shared<const Solution>(std::move(solution));
+  Ending ending;
+  ending.status = status_of(shared->summary.outcome);
+  if (ending.status != JobStatus::succeeded) {
+    ending.error = details_of(shared->summary);
+  } else if (!std::ranges::all_of(shared->sweep, is_solved)) {
+    ending.status = JobStatus::failed;
+    ending.error = incomplete(shared->sweep);
+  } else if (!std::ranges::all_of(shared->study, &std::string::empty, &StudyRow::error)) {
+    ending.status = JobStatus::failed;
+    ending.error = incomplete(shared->study);
+  }
+  ending.solution = shared;
+  ending.history = std::shared_ptr<const std::vector<Iteration>>(shared, &shared->history);
+  return ending;
+}
+
+Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live) {
+  try {
+    const api::Request request = api::parse_request(*claim.problem);
+    return ending_of(solve(request, live));
+  } catch (const Cancelled&) {
+    Ending ending = failed(std::current_exception(), live);
+    ending.status = JobStatus::cancelled;
+    return ending;
+  } catch (...) {
+    return failed(std::current_exception(), live);
+  }
+}
+
+}  // namespace signorini::server

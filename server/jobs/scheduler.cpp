@@ -1,0 +1,342 @@
+#include "server/jobs/scheduler.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <sys/resource.h>
+
+#include <spdlog/spdlog.h>
+
+#include "server/log.hpp"
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto idle_time = 1s;   // a store that failed is asked again, and what expired is dropped
+constexpr auto retry_time = 1s;  // between two tries to keep an ending
+constexpr auto patience_with_store = 60s;
+constexpr auto time_to_give_up = 100ms;  // how soon it is noticed that nobody waits any more
+
+Ending result_not_kept() {
+  Ending ending;
+  ending.status = JobStatus::failed;
+  ending.error = ProblemDetails{
+      "result-not-kept", "The result could not be kept",
+      "The problem was solved, but the data directory did not take the result; the log of the service says "
+      "why. Send the problem again when there is room, or take a coarser mesh."};
+  return ending;
+}
+
+double seconds_of(const Claim& claim) {
+  using Seconds = std::chrono::duration<double>;
+  return Seconds(std::chrono::system_clock::now() - *claim.job.started).count();
+}
+
+void log_end(const Claim& claim, const Ending& ending) {
+  const LogField seconds("seconds", std::round(seconds_of(claim) * 1000) / 1000);
+  if (!ending.solution) {
+    spdlog::info("{} kind={}", name(ending.status), ending.error->kind);
+    return;
+  }
+  const Summary& summary = ending.solution->summary;
+  const LogField method("method", summary.method), iterations("iterations", std::int64_t{summary.iterations});
+  const LogField triangles("triangles", summary.triangles);
+  spdlog::info("{}", name(summary.outcome));
+}
+
+}  // namespace
+
+Scheduler::Scheduler(JobStore& store, SolveFunction solve, int workers, double max_memory,
+                     EndObserver observer)
+    : store_(store),
+      solve_(std::move(solve)),
+      observer_(std::move(observer)),
+      memory_(max_memory, static_cast<std::size_t>(workers)),
+      working_(workers) {
+  for (int i = 0; i < workers; ++i) threads_.emplace_back(&Scheduler::work, this);
+}
+
+Scheduler::~Scheduler() {
+  stop();
+}
+
+std::string Scheduler::submit(NewJob job) {
+  // So that no job is queued after stop() has emptied the queue.
+  const std::shared_lock admitted(admission_);
+  if (!accepting()) throw Stopping();
+  const std::string new_id = job.id;
+  memory_.admit(new_id, job.predicted_memory);
+  std::string id;
+  try {
+    id = store_.add(std::move(job));
+  } catch (...) {
+    memory_.release(new_id);
+    throw;
+  }
+  if (id != new_id) memory_.release(new_id);
+  {
+    const std::lock_guard lock(mutex_);
+    ++submissions_;
+  }
+  queued_.notify_one();
+  return id;
+}
+
+std::optional<Job> Scheduler::wait(const std::string& id, std::chrono::duration<double> time,
+                                   const std::function<bool()>& given_up) {
+  using Clock = std::chrono::steady_clock;
+  const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
+  const std::shared_ptr<const Watch> watched = watch(id);
+  const std::optional<Job> job = store_.find(id);
+  if (!job || has_ended(job->status)) return job;
+  const auto over = [&] { return watched->over() || stopped_; };
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const auto next = given_up ? std::min(until, Clock::now() + time_to_give_up) : until;
+    if (ended_.wait_until(lock, next, over) || Clock::now() >= until) break;
+    lock.unlock();
+    if (given_up && given_up()) break;
+    lock.lock();
+  }
+  if (lock) lock.unlock();
+  return store_.find(id);
+}
+
+std::shared_ptr<const Watch> Scheduler::watch(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(watches_, [](const auto& each) { return each.second.expired(); });
+  std::weak_ptr<Watch>& place = watches_[id];
+  if (std::shared_ptr<Watch> watch = place.lock()) return watch;
+  const auto watch = std::make_shared<Watch>();
+  const auto running = live_.find(id);
+  if (running != live_.end()) watch->begin(running->second);
+  place = watch;
+  return watch;
+}
+
+void Scheduler::cancel(const std::string& id) {
+  for (;;) {
+    const std::optional<Job> job = store_.find(id);
+    if (!job || has_ended(job->status) || try_to_cancel(id)) return;
+    std::this_thread::yield();
+  }
+}
+
+Dismissal Scheduler::dismiss(const std::string& id) {
+  // A job may step on between two of these; then the next round finds it where it went.
+  while (store_.find(id)) {
+    if (store_.remove_ended(id)) return Dismissal::removed;
+    if (const std::optional<Dismissal> dismissal = try_to_cancel(id)) return *dismissal;
+    std::this_thread::yield();
+  }
+  return Dismissal::unknown;
+}
+
+/// Nothing if the job has ended, or is between two steps.
+std::optional<Dismissal> Scheduler::try_to_cancel(const std::string& id) {
+  const Cancellation cancellation = store_.cancel(id);
+  if (cancellation == Cancellation::ended) {
+    announce_end(id);
+    const LogField job("job", id);
+    spdlog::info("cancelled while queued");
+    return Dismissal::cancelled;
+  }
+  if (cancellation == Cancellation::asked && cancel_running(id)) return Dismissal::cancelling;
+  return std::nullopt;
+}
+
+std::shared_ptr<const LiveSolve> Scheduler::live(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = live_.find(id);
+  return found == live_.end() ? nullptr : found->second;
+}
+
+bool Scheduler::accepting() const {
+  const std::lock_guard lock(mutex_);
+  return !draining_;
+}
+
+void Scheduler::drain() {
+  {
+    const std::lock_guard alone(admission_);
+    const std::lock_guard lock(mutex_);
+    draining_ = true;
+  }
+  if (!store_.outlives_process()) cancel_all_queued();
+  queued_.notify_all();
+}
+
+bool Scheduler::wait_until_idle(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return ended_.wait_for(lock, time, [&] { return working_ == 0; });
+}
+
+void Scheduler::stop() {
+  drain();
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (const auto& [id, live] : live_) live->cancel();
+  }
+  queued_.notify_all();
+  const std::lock_guard joining(joining_);
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  ended_.notify_all();
+}
+
+void Scheduler::work() {
+  // On Linux, of this thread alone: a solve takes the time that answers leave.
+  setpriority(PRIO_PROCESS, 0, 10);
+  while (const std::optional<Running> running = next()) run_to_end(*running);
+  {
+    const std::lock_guard lock(mutex_);
+    --working_;
+  }
+  ended_.notify_all();
+}
+
+void Scheduler::run_to_end(const Running& running) {
+  const Claim& claim = running.claim;
+  const LogField job("job", claim.job.id);
+  std::optional<LogField> trace;
+  if (!claim.job.trace.empty()) trace.emplace("trace", claim.job.trace);
+  spdlog::info("started");
+  count_memory(claim);
+  const Ending ending = run(claim, solve_, *running.live);
+  log_end(claim, ending);
+  observer_(claim.job, ending);
+  keep(claim, ending);
+  announce_end(claim.job.id);
+}
+
+/// Those that an earlier process accepted are counted from their start on.
+void Scheduler::count_memory(const Claim& claim) {
+  if (memory_.knows(claim.job.id)) return;
+  try {
+    const api::Request request = api::parse_request(*claim.problem);
+    const auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
+    memory_.add(claim.job.id, predicted_memory(estimate(request.problem), runs));
+  } catch (const std::exception&) {
+    // The run says what is wrong with the problem.
+  }
+}
+
+std::optional<Scheduler::Running> Scheduler::next() {
+  std::unique_lock lock(mutex_);
+  while (!draining_) {
+    const std::uint64_t submissions = submissions_;
+    lock.unlock();
+    std::optional<Claim> claim = try_to_claim();
+    lock.lock();
+    if (claim) {
+      const auto live = std::make_shared<LiveSolve>(*claim->job.started);
+      if (stopping_) live->cancel();
+      live_[claim->job.id] = live;
+      if (const auto watch = watch_of(claim->job.id)) watch->begin(live);
+      return Running{std::move(*claim), live};
+    }
+    queued_.wait_for(lock, idle_time, [&] { return draining_ || submissions_ != submissions; });
+  }
+  return std::nullopt;
+}
+
+std::optional<Claim> Scheduler::try_to_claim() {
+  try {
+    std::optional<Claim> claim = store_.claim();
+    if (!claim) store_.drop_expired();
+    return claim;
+  } catch (const StoreUnavailable&) {
+    return std::nullopt;
+  } catch (const std::exception& error) {
+    spdlog::error("no solve could be taken from the queue: {}", error.what());
+    return std::nullopt;
+  }
+}
+
+/// A store that fails may recover: what was solved is kept in memory meanwhile. If it does not, the job ends
+/// without its result, for which there may be no room at all; and if the service is stopped first, the next
+/// process solves it again.
+void Scheduler::keep(const Claim& claim, const Ending& ending) {
+  const auto until = std::chrono::steady_clock::now() + patience_with_store;
+  while (std::chrono::steady_clock::now() < until) {
+    if (try_to_keep(claim, ending)) return;
+    if (!pause()) return;
+  }
+  while (!try_to_keep(claim, result_not_kept())) {
+    if (!pause()) return;
+  }
+}
+
+/// False if it is worth another try.
+bool Scheduler::try_to_keep(const Claim& claim, const Ending& ending) {
+  try {
+    const bool interrupted =
+        ending.status == JobStatus::cancelled && !accepting() && store_.outlives_process();
+    if (interrupted && store_.give_back(claim)) {
+      spdlog::info("queued again for the next start");
+    } else if (!store_.finish(claim, ending)) {
+      spdlog::error("it was not this worker's any more; its end is not kept");
+    }
+    return true;
+  } catch (const std::exception& error) {
+    spdlog::error("its end could not be kept: {}", error.what());
+    return false;
+  }
+}
+
+/// Some time, or false as soon as the service stops.
+bool Scheduler::pause() {
+  std::unique_lock lock(mutex_);
+  return !queued_.wait_for(lock, retry_time, [&] { return stopping_; });
+}
+
+void Scheduler::announce_end(const std::string& id) {
+  memory_.release(id);
+  {
+    const std::lock_guard lock(mutex_);
+    live_.erase(id);
+    if (const auto watch = watch_of(id)) watch->end();
+    watches_.erase(id);
+  }
+  ended_.notify_all();
+}
+
+/// Null if nobody watches the job. The mutex must be held.
+std::shared_ptr<Watch> Scheduler::watch_of(const std::string& id) const {
+  const auto found = watches_.find(id);
+  return found == watches_.end() ? nullptr : found->second.lock();
+}
+
+bool Scheduler::cancel_running(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = live_.find(id);
+  if (found == live_.end()) return false;
+  found->second->cancel();
+  const LogField job("job", id);
+  spdlog::info("cancelling");
+  return true;
+}
+
+void Scheduler::cancel_all_queued() {
+  ListQuery queued;
+  queued.status = JobStatus::queued;
+  JobPage page;
+  do {
+    page = store_.list(queued);
+    for (const Job& job : page.jobs) {
+      if (store_.cancel(job.id) != Cancellation::ended) continue;
+      announce_end(job.id);
+      const LogField field("job", job.id);
+      spdlog::info("cancelled while queued");
+    }
+  } while (page.more);
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "server/jobs/memory_budget.hpp"
+#include "server/jobs/run.hpp"
+#include "server/jobs/store.hpp"
+#include "server/jobs/watch.hpp"
+
+namespace signorini::server {
+
+/// The service takes no more jobs because it is about to end.
+class Stopping : public std::runtime_error {
+ public:
+  Stopping() : std::runtime_error("the service is stopping") {}
+};
+
+/// What became of a job that a client does not want any more.
+enum class Dismissal { unknown, cancelled, cancelling, removed };
+
+/// Told how each run of a job ended, before its end is kept.
+using EndObserver = std::function<void(const Job& job, const Ending& ending)>;
+
+/// Runs the jobs of a store on a fixed number of threads.
+class Scheduler {
+ public:
+  /// The solves that run at the same time are to take no more than `max_memory` bytes together, as predicted.
+  Scheduler(
+      JobStore& store, SolveFunction solve, int workers,
+      double max_memory = std::numeric_limits<double>::infinity(), EndObserver observer = [](auto&&...) {});
+  ~Scheduler();
+
+  Scheduler(const Scheduler&) = delete;
+  Scheduler& operator=(const Scheduler&) = delete;
+
+  /// The id that JobStore::add() returns. Throws what that throws, MemoryFull, and Stopping once drain() was
+  /// called.
+  std::string submit(NewJob job);
+
+  /// The job when it has ended, or as it is when the time is over or `given_up`, which is asked now and then,
+  /// says so; nothing if it is gone.
+  std::optional<Job> wait(const std::string& id, std::chrono::duration<double> time,
+                          const std::function<bool()>& given_up = {});
+
+  /// What happens to a job from now on. One that has ended is never `over`: ask the store after this call.
+  std::shared_ptr<const Watch> watch(const std::string& id);
+
+  /// Cancels a job that has not ended: a running one ends at its next check.
+  void cancel(const std::string& id);
+
+  /// Cancels a job that has not ended, else removes it.
+  Dismissal dismiss(const std::string& id);
+
+  /// The solve of a job while it runs, else null.
+  std::shared_ptr<const LiveSolve> live(const std::string& id) const;
+
+  bool accepting() const;
+
+  /// Takes no more jobs and begins none; the running ones go on.
+  void drain();
+
+  /// Whether no job runs any more after drain(), waiting so long for it.
+  bool wait_until_idle(std::chrono::milliseconds time);
+
+  /// Drains, ends the running jobs at their next check, and returns when every thread has ended.
+  /// What has not ended then waits in the store for the next process, or is cancelled if the store ends with
+  /// this one. May be called again.
+  void stop();
+
+ private:
+  struct Running {
+    Claim claim;
+    std::shared_ptr<LiveSolve> live;
+  };
+
+  void work();
+  void run_to_end(const Running& running);
+  void count_memory(const Claim& claim);
+  std::optional<Running> next();
+  std::optional<Claim> try_to_claim();
+  bool try_to_keep(const Claim& claim, const Ending& ending);
+  void keep(const Claim& claim, const Ending& ending);
+  bool pause();
+  void announce_end(const std::string& id);
+  std::shared_ptr<Watch> watch_of(const std::string& id) const;
+  std::optional<Dismissal> try_to_cancel(const std::string& id);
+  bool cancel_running(const std::string& id);
+  void cancel_all_queued();
+
+  JobStore& store_;
+  const SolveFunction solve_;
+  const EndObserver observer_;
+  MemoryBudget memory_;
+
+  std::shared_mutex admission_;  ///< held by those who queue a job, and by drain() alone
+
+  // Never held while the store is asked, which may take as long as a disk does.
+  mutable std::mutex mutex_;
+  std::condition_variable queued_;  ///< a job was queued, or drain, or stop
+  std::condition_variable ended_;   ///< a job ended, or a thread has
+  bool draining_ = false;
+  bool stopping_ = false;
+  bool stopped_ = false;
+  int working_;  ///< threads that have a job or would take one
+  std::uint64_t submissions_ = 0;
+  std::map<std::string, std::shared_ptr<LiveSolve>> live_;
+  std::map<std::string, std::weak_ptr<Watch>> watches_;  ///< by the id of the job; shared by all who watch it
+
+  std::mutex joining_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace signorini::server

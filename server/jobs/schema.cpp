@@ -1,0 +1,75 @@
+#include "server/jobs/schema.hpp"
+
+#include <array>
+
+#include "server/jobs/store.hpp"
+
+namespace signorini::server {
+namespace {
+
+// A step that was ever released stays as it is; a change is a new step.
+constexpr std::array steps{
+    // Times are milliseconds since 1970. `jobs` is what lists and status calls read: no large values.
+    R"sql(
+CREATE TABLE jobs (
+  id TEXT PRIMARY KEY,                      -- sorts by age
+  status TEXT NOT NULL,
+  title TEXT NOT NULL,
+  created INTEGER NOT NULL,
+  started INTEGER,
+  finished INTEGER,
+  attempt INTEGER NOT NULL DEFAULT 0,       -- of the last claim; who ends the job must know it
+  given_back INTEGER NOT NULL DEFAULT 0,    -- attempts that no dying process cut short
+  cancel_asked INTEGER NOT NULL DEFAULT 0,
+  verdict BLOB,                             -- stored_form.hpp
+  bytes INTEGER NOT NULL                    -- of the problem and the result as stored
+) STRICT, WITHOUT ROWID;
+CREATE INDEX jobs_by_status ON jobs (status, id);
+CREATE INDEX jobs_by_end ON jobs (finished, id, bytes) WHERE finished IS NOT NULL;
+
+CREATE TABLE problems (
+  job TEXT PRIMARY KEY REFERENCES jobs ON DELETE CASCADE,
+  text BLOB NOT NULL                        -- stored_form.hpp
+) STRICT;
+
+CREATE TABLE results (
+  job TEXT NOT NULL REFERENCES jobs ON DELETE CASCADE,
+  piece INTEGER NOT NULL,                   -- SQLite takes no value beyond 1e9 bytes
+  bytes BLOB NOT NULL,                      -- stored_form.hpp
+  PRIMARY KEY (job, piece)
+) STRICT;
+)sql",
+    R"sql(
+CREATE TABLE idempotency_keys (
+  key TEXT PRIMARY KEY,
+  job TEXT NOT NULL UNIQUE REFERENCES jobs ON DELETE CASCADE
+) STRICT, WITHOUT ROWID;
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN trace TEXT NOT NULL DEFAULT '';  -- of the request, for the log
+)sql"};
+
+}  // namespace
+
+int schema_version() {
+  return static_cast<int>(steps.size());
+}
+
+void migrate(SQLite::Database& database, int version) {
+  const int found = database.execAndGet("PRAGMA user_version").getInt();
+  if (found > schema_version()) {
+    throw CannotOpenStore(
+        "the jobs in the data directory were written by a newer version of the service "
+        "(tables of version " +
+        std::to_string(found) + ", known are those up to " + std::to_string(schema_version()) +
+        "); run that version, or take another directory (--data-dir)");
+  }
+  for (int step = found; step < version; ++step) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    database.exec(steps.at(static_cast<std::size_t>(step)));
+    database.exec("PRAGMA user_version = " + std::to_string(step + 1));
+    transaction.commit();
+  }
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "server/jobs/job.hpp"
+
+namespace signorini::server {
+
+/// As many jobs wait as may wait.
+class QueueFull : public std::runtime_error {
+ public:
+  explicit QueueFull(std::size_t queue_limit) : std::runtime_error("the queue is full"), limit(queue_limit) {}
+
+  std::size_t limit;
+};
+
+/// The idempotency key came with another problem before.
+class KeyReused : public std::runtime_error {
+ public:
+  explicit KeyReused(std::string earlier_job)
+      : std::runtime_error("the idempotency key belongs to another problem"), job(std::move(earlier_job)) {}
+
+  std::string job;  ///< the one that has the key
+};
+
+/// The store can neither be written nor perhaps read for now: the disk is full or broken. The text says why.
+/// The call has changed nothing, and may work later.
+class StoreUnavailable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A store that cannot be opened at all; the text names the cause and the remedy.
+class CannotOpenStore : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct StoreLimits {
+  std::size_t queue = 64;       ///< jobs that may wait
+  std::size_t keep_bytes = 0;   ///< for what has ended; the job that ended last is kept however large it is
+  std::chrono::seconds keep{};  ///< how long what has ended is kept
+};
+
+/// A job that a worker has taken to run. Only the holder of the latest attempt may end it.
+struct Claim {
+  Job job;
+  std::shared_ptr<const std::string> problem;
+  std::uint64_t attempt = 0;
+};
+
+struct ListQuery {
+  std::optional<JobStatus> status;
+  std::size_t limit = 50;
+  std::optional<std::string> after;  ///< only jobs that are older than this id
+};
+
+struct JobPage {
+  std::vector<Job> jobs;  ///< newest first
+  bool more = false;
+};
+
+using JobCounts = std::map<JobStatus, std::size_t>;
+
+/// What came of the wish to cancel a job.
+enum class Cancellation {
+  none,   ///< it has ended, or there is none
+  ended,  ///< it was queued, and is `cancelled` now
+  asked,  ///< it runs; it is not queued again whatever happens to its worker
+};
+
+/// Keeps jobs. Every call is one step that is done as a whole or not at all, whatever other threads call. A
+/// step that has returned is kept as safely as the store keeps anything. Every call may throw
+/// StoreUnavailable.
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  /// Takes a new job as `queued` and returns its id; or, for a key that came with the same problem before,
+  /// the id of that earlier job. Throws QueueFull and KeyReused.
+  virtual std::string add(NewJob job) = 0;
+
+  /// Turns the oldest queued job into `running`.
+  virtual std::optional<Claim> claim() = 0;
+
+  /// Ends a running job, and drops what is beyond the limits. False if the attempt is no longer the job's.
+  virtual bool finish(const Claim& claim, const Ending& ending) = 0;
+
+  /// Queues a running job again, as if it had not been claimed. False if the attempt is no longer the job's,
+  /// or if it is to be cancelled.
+  virtual bool give_back(const Claim& claim) = 0;
+
+  virtual Cancellation cancel(const std::string& id) = 0;
+
+  /// Removes a job that has ended. False if there is none.
+  virtual bool remove_ended(const std::string& id) = 0;
+
+  /// Drops the jobs that ended too long ago.
+  virtual void drop_expired() = 0;
+
+  virtual std::optional<Job> find(const std::string& id) const = 0;
+  virtual JobPage list(const ListQuery& query) const = 0;
+
+  /// How many jobs there are of each status that any job has.
+  virtual JobCounts count() const = 0;
+
+  /// The problem of a job, and what was found out once it has ended.
+  virtual std::optional<JobResult> result(const std::string& id) const = 0;
+
+  /// Why nothing can be written for now; nothing if it can. Tries it if the last write failed.
+  virtual std::optional<std::string> trouble() = 0;
+
+  /// Whether the jobs are still there when the process has ended.
+  virtual bool outlives_process() const = 0;
+};
+
+}  // namespace signorini::server

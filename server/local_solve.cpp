@@ -1,0 +1,98 @@
+#include "server/local_solve.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "server/cores.hpp"
+#include "server/exit_code.hpp"
+#include "server/failure.hpp"
+#include "server/jobs/kept_operators.hpp"
+
+namespace signorini::server {
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void ask_to_stop(int) {
+  stop_asked = 1;
+}
+
+/// Ends the solve on Ctrl-C.
+class UntilSignal : public Observer {
+ public:
+  UntilSignal() {
+    std::signal(SIGINT, ask_to_stop);
+    std::signal(SIGTERM, ask_to_stop);
+  }
+  bool keep_going() override { return stop_asked == 0; }
+};
+
+void report(const ProblemDetails& details, std::optional<int> status = std::nullopt) {
+  std::cerr << to_json(details, status) << std::endl;
+}
+
+std::string read_all(std::istream& stream) {
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+bool write_to_stdout(const Ending& ending, const WriteEnding& write) {
+  const bool written = write(ending, [](std::string_view piece) {
+    return std::fwrite(piece.data(), 1, piece.size(), stdout) == piece.size();
+  });
+  return std::fflush(stdout) == 0 && written;
+}
+
+/// A fault of the data that only the real mesh shows is bad input too.
+int exit_code_of(const Failure& failure) {
+  return failure.details.kind == "invalid-problem" ? exit_bad_input : exit_failed;
+}
+
+}  // namespace
+
+std::string read_input(const std::string& file) {
+  if (file == "-") return read_all(std::cin);
+  std::ifstream stream(file, std::ios::binary);
+  std::string text = read_all(stream);
+  if (!stream.is_open() || stream.bad())
+    throw BadInput{{"unreadable-file", "The file cannot be read", "Cannot read " + file + "."}};
+  return text;
+}
+
+api::Request parse_input(const std::string& text) {
+  try {
+    return api::parse_request(text);
+  } catch (...) {
+    const Failure failure = describe(std::current_exception());
+    throw BadInput{failure.details, failure.status};
+  }
+}
+
+int solve_and_write(const api::Request& request, const WriteEnding& write) {
+  UntilSignal observer;
+  KeptOperators not_kept(0);
+  try {
+    const Ending ending = ending_of(solve_request(request, observer, not_kept));
+    if (ending.error) report(*ending.error);
+    const bool written = write_to_stdout(ending, write);
+    return written && ending.status == JobStatus::succeeded ? exit_done : exit_failed;
+  } catch (...) {
+    const Failure failure = describe(std::current_exception());
+    report(failure.details);
+    return exit_code_of(failure);
+  }
+}
+
+int run_locally(const std::function<int()>& command) {
+  share_cores(1);
+  try {
+    return command();
+  } catch (const BadInput& bad) {
+    report(bad.details, bad.status);
+    return exit_bad_input;
+  }
+}
+
+}  // namespace signorini::server

@@ -1,0 +1,21 @@
+#include "server/problem_details.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "server/json_text.hpp"
+
+namespace signorini::server {
+
+std::string to_json(const ProblemDetails& details, std::optional<int> status) {
+  nlohmann::ordered_json document;
+  document["type"] = "urn:signorini:problem:" + details.kind;
+  document["title"] = details.title;
+  if (status) document["status"] = *status;
+  document["detail"] = details.detail;
+  for (const FaultItem& item : details.errors) {
+    document["errors"].push_back({{item.key, item.where}, {"detail", item.detail}});
+  }
+  return json_text(document);
+}
+
+}  // namespace signorini::server

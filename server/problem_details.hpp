@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace signorini::server {
+
+/// One fault of a request. The key says what `where` is: a JSON `pointer` into the body, or the name of a
+/// query `parameter`.
+struct FaultItem {
+  std::string key;
+  std::string where;
+  std::string detail;
+};
+
+/// What went wrong, in words: the reply of a refused request (RFC 9457), and the `error` of a job.
+struct ProblemDetails {
+  std::string kind;    ///< stable and short, e.g. `queue-full`; becomes the `type`
+  std::string title;   ///< the same for every problem of the kind
+  std::string detail;  ///< this occurrence: the cause and the remedy
+  std::vector<FaultItem> errors = {};
+};
+
+/// `{"type", "title", "status", "detail", "errors"}`; `status` only where there is an HTTP status,
+/// `errors` only where there are some.
+std::string to_json(const ProblemDetails& details, std::optional<int> status = std::nullopt);
+
+}  // namespace signorini::server

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "certify/lift.hpp"
+#include "certify/local_fields.hpp"
+#include "certify/point_constraints.hpp"
+#include "fem/discretization.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// v_h of the certificate: continuous, u_D on Γ_D, v_n ≤ g on Γ_C, v_n = 0 on rollers, and one order better
+/// than u_h.
+///
+/// It is quadratic on every triangle. Its values at the points are those of displacement_at_corners(), made
+/// admissible; its mean over each edge is that of the trace multiplier m, so that it inherits the balance of
+/// volume ∫ tr C σ_h = ∫ m·n of every triangle. What a boundary value has beyond its quadratic part is lifted
+/// into the triangle behind the edge.
+class AdmissibleDisplacement {
+ public:
+  /// `coupling`: the unknowns of the trace space.
+  AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
+                         const Eigen::VectorXd& coupling);
+
+  template <int D>
+  Quadratic<D> on(int t) const {
+    Quadratic<D> values;
+    for (int k = 0; k < 3; ++k) {
+      values.col(k) = points_.col(problem_.mesh.triangles[t][k]);
+      values.col(3 + k) = middles_.col(problem_.mesh.triangle_edges[t][k]);
+    }
+    return values;
+  }
+
+  /// Something is lifted into the triangle: v_h is no polynomial there.
+  bool is_lifted(int t) const;
+
+  /// Adds what is lifted into triangle t, and its gradient, at a point of the reference triangle.
+  template <int D>
+  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse_jacobian,
+                 Eigen::Matrix<double, D, 1>& value, Tensor<D>& slope) const;
+
+  /// The value on an edge at s ∈ [0, 1] from its first to its second point.
+  Eigen::VectorXd on_edge(int edge, double s) const;
+
+  /// g − v_n on a contact edge.
+  double room(const ContactEdge& contact, double s) const;
+
+  /// Why v_h is not admissible, in words; empty if it is.
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  /// What is lifted from the edge, or null; the edge runs from its first to its second point.
+  const Lift* lift(int edge) const;
+
+  using Values = std::function<Eigen::VectorXd(double s)>;
+
+  void set_middles(const Eigen::VectorXd& coupling);
+  void constrain_points(const Eigen::VectorXd& clearance);
+  void fix_points(int edge, const Fixed& fixed);
+  void admit(int point, std::vector<PointConstraint> constraints);
+  void fix(const BoundaryPart& part, const Fixed& condition);
+  void roll(const BoundaryPart& part);
+  void meet(const ContactEdge& contact, const Eigen::VectorXd& clearance);
+  void close(const ContactEdge& contact);
+  void lower_below(const ContactEdge& contact);
+  void add_lift(int edge, const Values& d);
+  void refuse(const std::string& reason);
+
+  Point at(int edge, double s) const;
+  double gap_at(const ContactEdge& contact, double s) const;
+  /// The vector with v_n = direction · v on a contact edge.
+  Eigen::VectorXd direction(const ContactEdge& contact) const;
+
+  const Discretization& problem_;
+  int components_;
+  Eigen::MatrixXd points_;   ///< a column a point
+  Eigen::MatrixXd middles_;  ///< a column an edge
+  double scale_;             ///< max |v|
+  std::map<int, Eigen::VectorXd> fixed_points_;
+  std::map<int, Lift> lifts_;
+  std::vector<std::string> unmet_;
+};
+
+}  // namespace signorini

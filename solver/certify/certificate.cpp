@@ -1,0 +1,129 @@
+#include "certify/certificate.hpp"
+
+#include <cmath>
+
+#include "certify/oscillation.hpp"
+#include "certify/triangle_sums.hpp"
+
+namespace signorini {
+namespace {
+
+/// 2 ∫ p* (g − v_n) over a contact edge.
+double contact_term(const Discretization& problem, const AdmissibleDisplacement& v,
+                    const ContactPressure& pressure, int i) {
+  const ContactEdge& contact = problem.clearance.edges[i];
+  const auto& [first, second] = pressure.at_ends[i];
+  if (first == 0 && second == 0) return 0;
+  double sum = 0;
+  for (int q = 0; q < EdgeRule::size; ++q) {
+    const double s = edge_rule().points[q];
+    sum += edge_rule().weights[q] * ((1 - s) * first + s * second) * std::max(0., v.room(contact, s));
+  }
+  return 2 * sum * problem.mesh.length(contact.edge);
+}
+
+/// ∫ t·v over Γ_F.
+template <int D>
+double work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v) {
+  const TractionField<D> traction(problem);
+  double sum = 0;
+  for (int edge = 0; edge < static_cast<int>(problem.mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    for (int q = 0; q < EdgeRule::size; ++q) {
+      const double s = edge_rule().points[q];
+      sum += edge_rule().weights[q] * problem.mesh.length(edge) * traction(edge, s).dot(v.on_edge(edge, s));
+    }
+  }
+  return sum;
+}
+
+/// The sums over all triangles and over Γ_C, and their shares.
+template <int D, typename Sums>
+struct Totals {
+  Totals(const Discretization& problem, const AdmissibleDisplacement& v, const ContactPressure& pressure,
+         Sums sums, Progress& progress)
+      : shares(problem.triangles()) {
+    LawField<D> law(problem.problem.material);
+    const Oscillation<D> oscillation(problem);
+    for (int t = 0; t < problem.triangles(); ++t) {
+      progress.check_in(t);
+      const TriangleSums own = sums(t, law);
+      all += own;
+      const double o = oscillation(t, law);
+      oscillation_square += o * o;
+      shares[t] = own.gap + own.correction + o * o;
+    }
+    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
+      const double own = contact_term(problem, v, pressure, i);
+      contact += own;
+      shares[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]] += own;
+    }
+    all.energy -= work_of_traction<D>(problem, v);
+  }
+
+  TriangleSums all;
+  double contact = 0, oscillation_square = 0;
+  Eigen::VectorXd shares;
+};
+
+template <typename Totals>
+ErrorBound bound_from(const Totals& totals) {
+  ErrorBound bound;
+  bound.parts = {std::sqrt(totals.all.gap), std::sqrt(totals.contact), std::sqrt(totals.oscillation_square),
+                 std::sqrt(totals.all.correction)};
+  const double of_pair =
+      bound.parts.oscillation + std::sqrt(totals.oscillation_square + totals.all.gap + totals.contact);
+  bound.value = of_pair + bound.parts.equilibration;
+  const double stress = std::sqrt(totals.all.stress);
+  bound.relative = stress > 0 ? bound.value / stress : (bound.value > 0 ? 1 : 0);
+  bound.energy_upper = totals.all.energy;
+  bound.energy_lower = bound.energy_upper - of_pair * of_pair / 2;
+  return bound;
+}
+
+void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
+  all.insert(all.end(), some.begin(), some.end());
+}
+
+}  // namespace
+
+Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
+                    Progress& progress) {
+  const AdmissibleDisplacement v(problem, solution, coupling);
+  const Eigen::VectorXd clearance =
+      problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
+  const ContactPressure pressure(problem, solution.stress, clearance);
+  Certificate certificate;
+  std::vector<std::string> unmet = v.unmet();
+  add(unmet, pressure.unmet);
+  // Rounding leaves less; an iteration that its tolerance ended before leaves more.
+  constexpr double equilibrium = 1e-9;
+  if (solution.summary.residuals.equilibrium > equilibrium)
+    unmet.push_back("the stress is not in equilibrium: the iteration ended before it was");
+  const auto finish = [&](auto&& totals) {
+    certificate.bound = bound_from(totals);
+    certificate.squares = std::move(totals.shares);
+  };
+  if (problem.spaces().components == 1) {
+    finish(Totals<1, MembraneSums>(problem, v, pressure, MembraneSums(problem, solution, v, pressure),
+                                   progress));
+  } else {
+    const EdgeTractions tractions(problem, solution.stress, pressure);
+    add(unmet, tractions.unmet());
+    progress.check();
+    finish(
+        Totals<2, ElasticSums>(problem, v, pressure, ElasticSums(problem, solution, v, tractions), progress));
+  }
+  const double oscillation = certificate.bound.parts.oscillation;
+  // In the constant parts of load and traction the moments of the rest are missing.
+  if (problem.spaces().components == 2 && problem.spaces().order == 0 &&
+      oscillation * certificate.bound.relative > 1e-12 * certificate.bound.value)
+    unmet.push_back(
+        "the nonconforming scheme balances a load or traction that varies within a triangle in force but not "
+        "in moment: use the conforming scheme");
+  certificate.bound.unmet = std::move(unmet);
+  certificate.bound.guaranteed = certificate.bound.unmet.empty();
+  return certificate;
+}
+
+}  // namespace signorini

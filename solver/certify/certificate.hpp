@@ -1,0 +1,29 @@
+#pragma once
+
+#include "fem/discretization.hpp"
+#include "progress.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// The error bound with its share in every triangle.
+struct Certificate {
+  ErrorBound bound;
+  /// Entry t: the square of the energy norm that triangle t adds to the bound: the guide for refinement.
+  Eigen::VectorXd squares;
+};
+
+/// Bounds the error of a discrete solution (design.md, "The certificate"). With an admissible displacement v
+/// and a stress σ* in equilibrium with Πf and Πt whose pressure p* on Γ_C is nowhere negative,
+///
+///     E = ‖σ − σ*‖²_C + ‖ε(u − v)‖²_E + 2 <p*, g − u_n> + 2 <p, g − v_n>
+///       = ‖C σ* − ε(v)‖²_E + 2 <p*, g − v_n> + 2 (f − Πf, u − v) + 2 <t − Πt, u − v>,
+///
+/// so that √E ≤ o + √(o² + A²) with A² the first two terms on the right and o the oscillation of the data.
+/// The distance ‖σ* − σ_h‖_C is added, so that the bound is one of the answer itself.
+///
+/// `coupling`: the unknowns of the trace space.
+Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
+                    Progress& progress);
+
+}  // namespace signorini

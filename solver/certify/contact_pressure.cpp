@@ -1,0 +1,146 @@
+#include "certify/contact_pressure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "certify/pressure_chain.hpp"
+#include "mesh/parts.hpp"
+
+namespace signorini {
+namespace {
+
+/// Below this part of the forces of a chain a difference is rounding.
+constexpr double kRounding = 1e-12;
+
+double sum_of_forces(const Chain& chain) {
+  double sum = 0;
+  for (const Link& link : chain) sum += std::abs(link.forces[0]) + std::abs(link.forces[1]);
+  return sum;
+}
+
+/// Ψ at the nodes of a chain, in the direction in which it runs, and its mean over each link.
+struct Potential {
+  Potential(const Chain& given, const Chain& admissible, bool held_at_begin)
+      : at_nodes(given.size() + 1, 0.) {
+    for (std::size_t i = 0; i < given.size(); ++i)
+      at_nodes[i + 1] = at_nodes[i] + admissible[i].force() - given[i].force();
+    // It vanishes where the chain ends freely.
+    if (held_at_begin) {
+      const double rest = at_nodes.back();
+      for (double& value : at_nodes) value -= rest;
+    }
+    for (std::size_t i = 0; i < given.size(); ++i)
+      means.push_back(at_nodes[i] + admissible[i].forces[0] - given[i].forces[0]);
+  }
+
+  double largest() const {
+    double most = 0;
+    for (std::size_t i = 0; i < means.size(); ++i)
+      most = std::max({most, std::abs(at_nodes[i]), std::abs(means[i]), std::abs(at_nodes[i + 1])});
+    return most;
+  }
+
+  std::vector<double> at_nodes, means;
+};
+
+}  // namespace
+
+ContactPressure::ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
+                                 const Eigen::VectorXd& clearance)
+    : at_ends(problem.clearance.edges.size()), changes(at_ends.size()) {
+  for (const Chain& given : pressure_chains(problem, stress)) {
+    const AdmissibleChain chain = admissible(problem, given, clearance);
+    keep(problem, given, chain.links());
+    const Potential potential(given, chain.links(), chain.is_held(false));
+    const double scale = kRounding * sum_of_forces(given);
+    const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
+    if (free_ends && std::abs(potential.at_nodes.back()) > 100 * scale) refuse(problem, given, "pulls");
+    if (potential.largest() <= scale) continue;
+    if (problem.spaces().components == 1)
+      add_curl(problem, chain.links(), potential.at_nodes, potential.means);
+    else
+      add_airy(problem, chain, potential.at_nodes, potential.means);
+  }
+}
+
+void ContactPressure::refuse(const Discretization& problem, const Chain& chain, const std::string& what) {
+  unmet.push_back("the contact near " + to_string(problem.mesh.points[chain[0].begin]) + " " + what);
+}
+
+/// Of an elastic body the moment must stay, too. An edge between closed and open is left without pressure
+/// then, because its share would act with a moment, unless the contact is too short to balance it otherwise.
+AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
+                                            const Eigen::VectorXd& clearance) {
+  using Transition = AdmissibleChain::Transition;
+  AdmissibleChain loaded(problem, given, clearance, Transition::loaded);
+  if (problem.spaces().components == 1) return loaded;
+  AdmissibleChain free(problem, given, clearance, Transition::free);
+  if (free.is_held(false) || free.is_held(true)) return free;
+  // The arms are lengths along the chain about its middle.
+  std::vector<double> arms{0};
+  for (const Link& link : given) arms.push_back(arms.back() + link.length);
+  const double middle = arms.back() / 2;
+  for (double& arm : arms) arm = arm / middle - 1;
+  if (free.balance(given, arms)) return free;
+  if (!loaded.balance(given, arms)) refuse(problem, given, "pulls");
+  return loaded;
+}
+
+void ContactPressure::keep(const Discretization& problem, const Chain& given, const Chain& admissible) {
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    std::array<double, 2> pressure = admissible[i].pressure(), old = given[i].pressure();
+    if (problem.mesh.edges[problem.clearance.edges[given[i].number].edge][0] != given[i].begin) {
+      std::swap(pressure[0], pressure[1]);
+      std::swap(old[0], old[1]);
+    }
+    for (int k = 0; k < 2; ++k) {
+      at_ends[given[i].number][k] = std::max(0., pressure[k]);
+      changes[given[i].number][k] = pressure[k] - old[k];
+    }
+  }
+}
+
+void ContactPressure::add_curl(const Discretization& problem, const Chain& chain,
+                               const std::vector<double>& at_nodes, const std::vector<double>& means) {
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    const int edge = problem.clearance.edges[chain[i].number].edge;
+    const double sign = domain_on_the_left(problem.mesh, edge)[0] == chain[i].begin ? 1 : -1;
+    potential_at_points[chain[i].begin] = sign * at_nodes[i];
+    potential_at_points[chain[i].end] = sign * at_nodes[i + 1];
+    // The mean of a quadratic function over the edge is (a + 4 m + b) / 6.
+    potential_at_middles[edge] = sign * (6 * means[i] - at_nodes[i] - at_nodes[i + 1]) / 4;
+  }
+}
+
+/// Along the chain ψ' = −Ψ d·n and ∂_n ψ = Ψ d·t, with the direction d of the contact.
+void ContactPressure::add_airy(const Discretization& problem, const AdmissibleChain& chain,
+                               const std::vector<double>& at_nodes, const std::vector<double>& means) {
+  const Chain& links = chain.links();
+  const auto edge_of = [&](std::size_t i) { return problem.clearance.edges[links[i].number].edge; };
+  const Vector direction = problem.clearance.edges[links[0].number].direction;
+  for (const Link& link : links)
+    if (problem.clearance.edges[link.number].direction.dot(direction) < 1 - 1e-12)
+      return refuse(
+          problem, links,
+          "bends: its pressure cannot be made admissible; give it a direction, or use active_set and "
+          "the nonconforming scheme");
+  // With the domain on the left: the sign of both Ψ and of the way.
+  const double sign = domain_on_the_left(problem.mesh, edge_of(0))[0] == links[0].begin ? 1 : -1;
+  std::vector<double> psi{0};
+  for (std::size_t i = 0; i < links.size(); ++i)
+    psi.push_back(psi.back() -
+                  means[i] * links[i].length * direction.dot(problem.mesh.outward_normal(edge_of(i))));
+  if (chain.is_held(false)) {
+    const double rest = psi.back();
+    for (double& value : psi) value -= rest;
+  }
+  // w = (∂_y ψ, −∂_x ψ) = −Ψ d.
+  const auto set = [&](int point, std::size_t i) {
+    const Vector w = -sign * at_nodes[i] * direction;
+    airy_at_points[point] = {psi[i], Vector(-w.y(), w.x())};
+  };
+  set(links[0].begin, 0);
+  for (std::size_t i = 0; i < links.size(); ++i) set(links[i].end, i + 1);
+}
+
+}  // namespace signorini

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "certify/pressure_chain.hpp"
+
+namespace signorini {
+
+/// The pressure p* on Γ_C: −σ_hn made nowhere negative, and 0 where the contact is open. The schemes have
+/// that only in the mean over each clearance function; an iteration that its tolerance ended, only nearly.
+///
+/// p* − p_h is the derivative along Γ_C of a potential Ψ that vanishes where Γ_C ends (but not where Γ_D
+/// begins, whose traction is free), so that a stress without divergence makes the change: for a membrane the
+/// curl of Ψ; for an elastic body, whose moments must balance too, the Airy stress of a function ψ with
+/// ψ' = −Ψ along Γ_C.
+struct ContactPressure {
+  /// ψ and ∇ψ at a point.
+  struct Airy {
+    double value = 0;
+    Vector gradient = Vector::Zero();
+  };
+
+  /// `clearance`: a value a row of the clearance space.
+  ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
+                  const Eigen::VectorXd& clearance);
+
+  /// At the first and the second point of each edge of the clearance space.
+  std::vector<std::array<double, 2>> at_ends;
+  /// (p* − p_h) at the same points.
+  std::vector<std::array<double, 2>> changes;
+  /// Ψ, with the domain on the left, at points and at the middles of edges; 0 where it is not named.
+  std::unordered_map<int, double> potential_at_points, potential_at_middles;
+  /// ψ at points, for an elastic body.
+  std::unordered_map<int, Airy> airy_at_points;
+  std::vector<std::string> unmet;
+
+ private:
+  AdmissibleChain admissible(const Discretization& problem, const Chain& given,
+                             const Eigen::VectorXd& clearance);
+  void keep(const Discretization& problem, const Chain& given, const Chain& admissible);
+  void add_curl(const Discretization& problem, const Chain& chain, const std::vector<double>& at_nodes,
+                const std::vector<double>& means);
+  void add_airy(const Discretization& problem, const AdmissibleChain& chain,
+                const std::vector<double>& at_nodes, const std::vector<double>& means);
+  void refuse(const Discretization& problem, const Chain& chain, const std::string& what);
+};
+
+}  // namespace signorini

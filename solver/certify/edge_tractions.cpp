@@ -1,0 +1,174 @@
+#include "certify/edge_tractions.hpp"
+
+#include <cmath>
+
+#include "certify/local_fields.hpp"
+#include "fem/lagrange.hpp"
+#include "mesh/parts.hpp"
+
+namespace signorini {
+namespace {
+
+/// Column t: ∫ φ_z (σ_xy − σ_yx) over triangle t for its three corners z.
+Eigen::Matrix3Xd asymmetry(const Discretization& problem, const Eigen::MatrixXd& stress) {
+  const StressValues<2> values(problem.spaces(), triangle_points());
+  Eigen::Matrix3Xd moments = Eigen::Matrix3Xd::Zero(3, problem.triangles());
+  for (int t = 0; t < problem.triangles(); ++t) {
+    const AffineMap map(problem.mesh.corners(t));
+    for (int q = 0; q < TriangleRule::size; ++q) {
+      const Tensor<2> sigma = values(q, map, stress.col(t));
+      moments.col(t) += triangle_rule().weights[q] * map.determinant * (sigma[1] - sigma[2]) *
+                        triangle_basis(1, triangle_rule().points[q]);
+    }
+  }
+  return moments;
+}
+
+/// The triangles at every point.
+std::vector<std::vector<int>> triangles_at_points(const Mesh& mesh) {
+  std::vector<std::vector<int>> at(mesh.points.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    for (const int point : mesh.triangles[t]) at[point].push_back(t);
+  return at;
+}
+
+int corner_number(const Mesh& mesh, int t, int point) {
+  const auto& corners = mesh.triangles[t];
+  return corners[0] == point ? 0 : (corners[1] == point ? 1 : 2);
+}
+
+/// The edges of a triangle at one of its points that a way around the point, counter-clockwise, crosses first
+/// and last.
+int entrance(const Mesh& mesh, int t, int point) {
+  return mesh.triangle_edges[t][(corner_number(mesh, t, point) + 2) % 3];
+}
+int exit(const Mesh& mesh, int t, int point) {
+  return mesh.triangle_edges[t][(corner_number(mesh, t, point) + 1) % 3];
+}
+
+int other_side(const Mesh& mesh, int edge, int t) {
+  const auto& [first, second] = mesh.edge_triangles[edge];
+  return first == t ? second : first;
+}
+
+}  // namespace
+
+EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
+                             const ContactPressure& pressure)
+    : problem_(problem), tractions_(problem.mesh.edges.size()) {
+  take_from(stress);
+  change_pressure(pressure);
+  balance_moments(stress);
+}
+
+Eigen::Matrix2d EdgeTractions::on(int t, int e) const {
+  const int edge = problem_.mesh.triangle_edges[t][e];
+  if (problem_.mesh.edge_triangles[edge][0] == t) return tractions_[edge];
+  return -tractions_[edge].rowwise().reverse();
+}
+
+void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
+  const Mesh& mesh = problem_.mesh;
+  const int order = problem_.spaces().order;
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
+    for (int c = 0; c < 2; ++c) {
+      LocalVector fluxes(order + 1);
+      for (int j = 0; j <= order; ++j) fluxes[j] = stress((e * (order + 1) + j) * 2 + c, t);
+      const LocalVector density = project_onto_edge(order, fluxes) / mesh.length(edge);
+      at(edge).row(c) << density[0], density[order];
+    }
+  }
+}
+
+/// The flux of the potential around each point balances the asymmetry of every triangle there.
+void EdgeTractions::balance_moments(const Eigen::MatrixXd& stress) {
+  const Eigen::Matrix3Xd moments = asymmetry(problem_, stress);
+  const auto triangles = triangles_at_points(problem_.mesh);
+  for (int point = 0; point < static_cast<int>(triangles.size()); ++point)
+    turn_around(point, triangles[point], moments);
+}
+
+void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
+                                const Eigen::Matrix3Xd& asymmetry) {
+  if (triangles.empty()) return;
+  const Mesh& mesh = problem_.mesh;
+  int start = triangles[0];
+  for (const int t : triangles)
+    if (other_side(mesh, entrance(mesh, t, point), t) < 0) start = t;
+
+  // The flux out of each triangle through its exit is the one that came in, and its own.
+  std::vector<int> edges, from;
+  std::vector<double> fluxes;
+  double flux = 0;
+  for (int t = start; t >= 0 && edges.size() < triangles.size();
+       t = other_side(mesh, exit(mesh, t, point), t)) {
+    flux += asymmetry(corner_number(mesh, t, point), t);
+    edges.push_back(exit(mesh, t, point));
+    from.push_back(t);
+    fluxes.push_back(flux);
+  }
+  if (edges.size() < triangles.size())
+    unmet_.push_back("the body touches itself in the point " + to_string(mesh.points[point]));
+  const bool inside = other_side(mesh, edges.back(), from.back()) >= 0;
+  double mean = 0;
+  if (inside)
+    for (const double own : fluxes) mean += own / static_cast<double>(fluxes.size());
+  else
+    fluxes.back() = 0;  // all that is left is rounding
+
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const int first = mesh.edge_triangles[edges[i]][0];
+    const double out = (from[i] == first ? 1 : -1) * (fluxes[i] - mean);
+    const int e = mesh.local_edge(first, edges[i]);
+    const auto corners = mesh.corners(first);
+    const Vector edge = corners[(e + 2) % 3] - corners[(e + 1) % 3];
+    // The bubble is 6 s (1 − s) / |e| n with n |e| = (edge_y, −edge_x); its derivative is ±6 / |e|² at the
+    // ends.
+    const double square = edge.squaredNorm();
+    const Vector change = 6 * out / square * Vector(edge.y(), -edge.x()) / std::sqrt(square);
+    at(edges[i]).col(0) += change;
+    at(edges[i]).col(1) -= change;
+  }
+}
+
+/// On Γ_C the traction changes by −(p* − p_h) d. Into the body the Airy function goes on with ψ and ∇ψ = 0 at
+/// all other points, cubic along each edge and with a linear normal derivative (the reduced element of Hsieh,
+/// Clough and Tocher): its traction is the derivative of w = (∂_y ψ, −∂_x ψ), w·n = ψ', w·t = −∂_n ψ.
+void EdgeTractions::change_pressure(const ContactPressure& pressure) {
+  const Mesh& mesh = problem_.mesh;
+  std::vector<bool> on_contact(mesh.edges.size(), false);
+  for (int i = 0; i < static_cast<int>(problem_.clearance.edges.size()); ++i) {
+    const int edge = problem_.clearance.edges[i].edge;
+    on_contact[edge] = true;
+    const auto [first, second] = pressure.changes[i];
+    const bool forward = domain_on_the_left(mesh, edge)[0] == mesh.edges[edge][0];
+    const Vector d = problem_.clearance.edges[i].direction;
+    at(edge).col(0) -= (forward ? first : second) * d;
+    at(edge).col(1) -= (forward ? second : first) * d;
+  }
+  if (pressure.airy_at_points.empty()) return;
+  const auto airy = [&](int point) {
+    const auto found = pressure.airy_at_points.find(point);
+    return found == pressure.airy_at_points.end() ? ContactPressure::Airy{} : found->second;
+  };
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    const auto& [p, q] = mesh.edges[edge];
+    if (on_contact[edge] || !(pressure.airy_at_points.contains(p) || pressure.airy_at_points.contains(q)))
+      continue;
+    const auto [from, to] = domain_on_the_left(mesh, edge);
+    const ContactPressure::Airy a = airy(from), b = airy(to);
+    const Vector way = mesh.points[to] - mesh.points[from];
+    const double length = way.norm();
+    const Vector t = way / length, n(t.y(), -t.x());
+    const double rise = (b.value - a.value) / length, slope_a = a.gradient.dot(t),
+                 slope_b = b.gradient.dot(t);
+    const double bend_a = (6 * rise - 4 * slope_a - 2 * slope_b) / length,
+                 bend_b = (-6 * rise + 2 * slope_a + 4 * slope_b) / length;
+    const Vector along = -(b.gradient - a.gradient).dot(n) / length * t;
+    at(edge).col(0) += bend_a * n + along;
+    at(edge).col(1) += bend_b * n + along;
+  }
+}
+
+}  // namespace signorini

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "certify/contact_pressure.hpp"
+#include "fem/discretization.hpp"
+
+namespace signorini {
+
+/// Tractions on all edges of an elastic body, linear on each edge, that hold every triangle in equilibrium of
+/// forces and of moments under the discrete load, so that a symmetric stress with these tractions exists.
+///
+/// They are those of σ_h and two changes, each the derivative along the edges of a vector potential and so
+/// free of force: the one that turns the pressure into p* (an Airy function near Γ_C), and one that spreads
+/// the asymmetry. as(σ_h) is orthogonal to every hat function φ_z, therefore normal bubbles on the edges
+/// around z exist whose fluxes balance ∫ φ_z as(σ_h) in each triangle at z (the flux equilibration of Braess
+/// and Schöberl 2008, applied to the rotation).
+class EdgeTractions {
+ public:
+  EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
+                const ContactPressure& pressure);
+
+  /// The traction on a triangle's local edge e from outside, per length: column 0 at corner e + 1, column 1
+  /// at corner e + 2.
+  Eigen::Matrix2d on(int t, int e) const;
+
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  Eigen::Matrix2d& at(int edge) { return tractions_[edge]; }
+  void take_from(const Eigen::MatrixXd& stress);
+  void change_pressure(const ContactPressure& pressure);
+  void balance_moments(const Eigen::MatrixXd& stress);
+  void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& asymmetry);
+
+  const Discretization& problem_;
+  /// Of each edge, seen from its first triangle, at the ends in the direction in which that triangle lies on
+  /// the left.
+  std::vector<Eigen::Matrix2d> tractions_;
+  std::vector<std::string> unmet_;
+};
+
+}  // namespace signorini

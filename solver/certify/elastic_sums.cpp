@@ -1,0 +1,117 @@
+#include "certify/oscillation.hpp"
+#include "certify/triangle_sums.hpp"
+
+namespace signorini {
+namespace {
+
+/// What each part of a triangle with lifts is cut into along each side.
+constexpr int kCuts = 4;
+
+/// A shape that has come up so often is worth its operators.
+constexpr int kOften = 32;
+
+}  // namespace
+
+ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution,
+                         const AdmissibleDisplacement& v, const EdgeTractions& tractions)
+    : problem_(problem),
+      solution_(solution),
+      v_(v),
+      tractions_(tractions),
+      has_load_(problem.problem.body.size() > 0),
+      plain_(problem.spaces(), 1),
+      composite_(problem.spaces(), kCuts),
+      shapes_(problem) {}
+
+/// The data of the macro-element: J⁻¹ t |e| for the tractions, −det J J⁻¹ Πf for the divergence.
+Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const AffineMap& map) const {
+  const Eigen::Matrix2d inverse = map.jacobian.inverse();
+  const auto corners = problem_.mesh.corners(t);
+  Eigen::Matrix<double, MacroElement::kData, 1> data;
+  for (int e = 0; e < 3; ++e) {
+    const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
+    const Eigen::Matrix2d ends = inverse * tractions_.on(t, e) * length;
+    data.segment<4>(4 * e) << ends.col(0), ends.col(1);
+  }
+  const Eigen::Matrix<double, 2, 3> load = -map.determinant * inverse * discrete_load<2>(problem_, t);
+  data.tail<6>() = load.reshaped();
+  return data;
+}
+
+ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
+  return {data_of(t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+}
+
+/// The operators of the triangle's shape, or null.
+const MacroNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
+  Shape& shape = shapes_(t, [] { return Shape(); });
+  if (++shape.seen == kOften)
+    shape.norms = std::make_unique<const MacroNorms>(plain_, map, SymmetricLaw(law(map({0, 0})).compliance));
+  return shape.norms.get();
+}
+
+std::vector<SymmetricLaw> ElasticSums::laws_at(const MacroRule& rule, const AffineMap& map,
+                                               LawField<2>& law) const {
+  std::vector<SymmetricLaw> laws;
+  const std::size_t count = problem_.element.has_constant_material() ? 1 : rule.places.size();
+  for (std::size_t q = 0; q < count; ++q) laws.emplace_back(law(map(rule.places[q].point)).compliance);
+  return laws;
+}
+
+/// The strains of what is lifted into the triangle.
+std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap& map,
+                                                         const MacroRule& rule) const {
+  std::vector<Eigen::Vector3d> strains;
+  for (const MacroElement::Place& place : rule.places) {
+    Eigen::Vector2d value = Eigen::Vector2d::Zero();
+    Tensor<2> slope = Tensor<2>::Zero();
+    v_.add_lifts<2>(t, place.point, map.jacobian.inverse(), value, slope);
+    strains.push_back(mandel(slope));
+  }
+  return strains;
+}
+
+/// (f, v).
+double ElasticSums::work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+                                 const Inner& inner) const {
+  if (!has_load_) return 0;
+  const VectorField& f = problem_.problem.body;
+  double work = 0;
+  for (int q = 0; q < rule.size(); ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    const Point x = map(rule.places[q].point);
+    Eigen::Vector2d v =
+        given.displacement.reshaped(2, 6) * at.basis + inner.reshaped(2, MacroRule::kInner) * at.inner_basis;
+    if (!given.lifted.empty()) {
+      Tensor<2> slope = Tensor<2>::Zero();
+      v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), v, slope);
+    }
+    work += rule.places[q].weight * map.determinant * (f(0, x) * v[0] + f(1, x) * v[1]);
+  }
+  return work;
+}
+
+TriangleSums ElasticSums::operator()(int t, LawField<2>& law) {
+  const AffineMap map(problem_.mesh.corners(t));
+  Given given = given_on(t, map);
+  const bool lifted = v_.is_lifted(t);
+  const MacroNorms* norms = lifted ? nullptr : norms_of(t, map, law);
+  if (norms) {
+    constexpr int most = MacroElement::kData + kMaxLocal + 12;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms->gap.cols());
+    z << given.data, given.stress, given.displacement;
+    const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
+      return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
+    };
+    const auto stresses = z.head(norms->correction.cols());
+    return {square(norms->gap, z), square(norms->correction, stresses), square(norms->stress, given.stress),
+            square(norms->strain, z) / 2 - work_of_load(t, map, plain_, given, norms->inner * z)};
+  }
+  const MacroRule& rule = lifted ? composite_ : plain_;
+  if (lifted) given.lifted = lifted_strains(t, map, rule);
+  const MacroValues<1> values(rule, map, given, laws_at(rule, map, law));
+  return {values.gap.squaredNorm(), values.correction.squaredNorm(), values.stress.squaredNorm(),
+          values.strain.squaredNorm() / 2 - work_of_load(t, map, rule, given, values.inner)};
+}
+
+}  // namespace signorini

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <vector>
+
+#include "certify/tensor.hpp"
+#include "fem/quadrature.hpp"
+#include "fem/scheme.hpp"
+
+namespace signorini {
+
+/// σ_h at given points of the reference triangle.
+template <int D>
+class StressValues {
+ public:
+  StressValues(const Spaces& spaces, const std::vector<Point>& points) : functions_(spaces.row.size()) {
+    for (const Point& point : points) tau_.push_back(spaces.row.reference_values(point));
+  }
+
+  /// σ_h at point q. `coefficients`: of one triangle, function by function, the rows of a function together.
+  template <typename Coefficients>
+  Tensor<D> operator()(int q, const AffineMap& map, const Coefficients& coefficients) const {
+    Tensor<D> value;
+    for (int c = 0; c < D; ++c) {
+      Vector sum = Vector::Zero();
+      for (int a = 0; a < functions_; ++a) sum += coefficients[a * D + c] * tau_[q].col(a);
+      value.template segment<2>(2 * c) = map.jacobian * sum / map.determinant;
+    }
+    return value;
+  }
+
+ private:
+  int functions_;
+  std::vector<LocalVectors> tau_;
+};
+
+/// A point of the reference triangle with its weight.
+struct WeightedPoint {
+  Point point;
+  double weight;
+};
+
+/// The triangle rule on each of cuts² similar triangles; 1 is the rule itself.
+std::vector<WeightedPoint> composite_rule(int cuts);
+
+/// The points of the triangle rule.
+std::vector<Point> triangle_points();
+
+/// Column q: the weights with which values at the points of the triangle rule give the corner values of their
+/// L2 projection onto P1.
+using CornerWeights = Eigen::Matrix<double, 3, TriangleRule::size>;
+CornerWeights corner_weights();
+
+/// A function of P2 on a triangle with values in D components: column k < 3 its value at corner k, column
+/// 3 + e its value at the middle of local edge e.
+template <int D>
+using Quadratic = Eigen::Matrix<double, D, 6>;
+
+/// The six functions of P2 at a point of the reference triangle, and their gradients there by columns.
+Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
+Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference);
+
+/// The gradient, row by row, of a function on the triangle with the given reference gradients (row c: of
+/// component c).
+template <int D>
+Tensor<D> gradient(const Eigen::Matrix2d& inverse_jacobian, const Eigen::Matrix<double, D, 2>& reference) {
+  Tensor<D> tensor;
+  for (int c = 0; c < D; ++c)
+    tensor.template segment<2>(2 * c) = (reference.row(c) * inverse_jacobian).transpose();
+  return tensor;
+}
+
+}  // namespace signorini

@@ -1,0 +1,157 @@
+#include "certify/macro_element.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "certify/local_fields.hpp"
+
+namespace signorini {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+Point corner(int i) {
+  static const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+  return corners[i % 3];
+}
+
+const Point kCentroid(1. / 3, 1. / 3);
+
+/// The affine map of a part: from its corners, those of the edge first and then the centroid.
+struct Part {
+  explicit Part(int k) : origin(corner(k + 1)) { jacobian << corner(k + 2) - origin, kCentroid - origin; }
+
+  Point operator()(const Point& own) const { return origin + jacobian * own; }
+
+  Point origin;
+  Eigen::Matrix2d jacobian;
+};
+
+/// The numbers of a part's six nodes among the ten: corners, then the middles opposite to them.
+std::array<int, 6> nodes_of(int part) {
+  const int a = (part + 1) % 3, b = (part + 2) % 3;
+  return {a, b, 6, 7 + b, 7 + a, 3 + part};
+}
+
+/// The reference coordinates of a part's nodes in the part.
+Point own_node(int i) {
+  static const std::array<Point, 6> nodes{Point(0, 0),     Point(1, 0),   Point(0, 1),
+                                          Point(0.5, 0.5), Point(0, 0.5), Point(0.5, 0)};
+  return nodes[i];
+}
+
+/// The normal to the right of the way from a to b, as long as the way.
+Vector scaled_normal(const Point& a, const Point& b) {
+  return {b.y() - a.y(), a.x() - b.x()};
+}
+
+/// Rows of conditions on the 54 coefficients and the 18 data that they must meet.
+struct Conditions {
+  Matrix of_stress = Matrix::Zero(54, MacroElement::kStresses);
+  Matrix of_data = Matrix::Zero(54, MacroElement::kData);
+  int rows = 0;
+
+  /// Adds τ N at node i of a part to two rows.
+  void add_traction(int row, int part, int i, const Vector& n, double sign) {
+    const int first = 18 * part + 3 * i;
+    of_stress.block<2, 3>(row, first) +=
+        sign * (Eigen::Matrix<double, 2, 3>() << n.x(), 0, n.y(), 0, n.y(), n.x()).finished();
+  }
+};
+
+void add_outer_tractions(Conditions& all) {
+  for (int k = 0; k < 3; ++k) {
+    const Vector n = scaled_normal(corner(k + 1), corner(k + 2));
+    const std::array<int, 3> nodes{0, 1, 5};
+    for (int i = 0; i < 3; ++i, all.rows += 2) {
+      all.add_traction(all.rows, k, nodes[i], n, 1);
+      for (int end = 0; end < 2; ++end) {
+        const double share = i == 2 ? 0.5 : (i == end ? 1 : 0);
+        all.of_data.block<2, 2>(all.rows, 4 * k + 2 * end) = share * Eigen::Matrix2d::Identity();
+      }
+    }
+  }
+}
+
+void add_inner_continuity(Conditions& all) {
+  for (int v = 0; v < 3; ++v) {
+    const Vector n = scaled_normal(corner(v), kCentroid);
+    // Corner v begins the edge of one part and ends that of another.
+    const int begins = (v + 2) % 3, ends = (v + 1) % 3;
+    for (const auto& [first, second] : {std::pair{0, 1}, {2, 2}, {4, 3}}) {
+      all.add_traction(all.rows, begins, first, n, 1);
+      all.add_traction(all.rows, ends, second, n, -1);
+      all.rows += 2;
+    }
+  }
+}
+
+void add_divergence(Conditions& all) {
+  for (int k = 0; k < 3; ++k) {
+    const Matrix to_reference = Part(k).jacobian.inverse().transpose();
+    for (int i = 0; i < 3; ++i, all.rows += 2) {
+      const Matrix gradients = to_reference * quadratic_gradients(own_node(i));
+      for (int j = 0; j < 6; ++j) {
+        const Vector g = gradients.col(j);
+        all.of_stress.block<2, 3>(all.rows, 18 * k + 3 * j) << g.x(), 0, g.y(), 0, g.y(), g.x();
+      }
+      for (int z = 0; z < 3; ++z) {
+        const double share = i == 2 ? 1. / 3 : (z == (k + 1 + i) % 3 ? 1 : 0);
+        all.of_data.block<2, 2>(all.rows, 12 + 2 * z) = share * Eigen::Matrix2d::Identity();
+      }
+    }
+  }
+}
+
+MacroElement make() {
+  Conditions all;
+  add_outer_tractions(all);
+  add_inner_continuity(all);
+  add_divergence(all);
+  Eigen::JacobiSVD<Matrix> svd(all.of_stress, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  svd.setThreshold(1e-10);
+  MacroElement element;
+  element.from_data = svd.solve(all.of_data);
+  element.free = svd.matrixV().rightCols<MacroElement::kFree>();
+  return element;
+}
+
+}  // namespace
+
+Point MacroElement::node(int number) {
+  if (number < 3) return corner(number);
+  if (number < 6) return (corner(number - 2) + corner(number - 1)) / 2;
+  if (number == 6) return kCentroid;
+  return (corner(number - 7) + kCentroid) / 2;
+}
+
+std::vector<MacroElement::Place> MacroElement::places(int cuts) {
+  std::vector<Place> all;
+  const auto add = [&](int k, const Point& own, double weight) {
+    const Part part(k);
+    Place place{part(own),
+                weight,
+                k,
+                quadratic_basis(own),
+                Eigen::Matrix<double, 2, kNodes>::Zero(),
+                Eigen::Matrix<double, kNodes, 1>::Zero()};
+    const Eigen::Matrix<double, 2, 6> gradients =
+        part.jacobian.inverse().transpose() * quadratic_gradients(own);
+    const std::array<int, 6> nodes = nodes_of(k);
+    for (int i = 0; i < 6; ++i) {
+      place.displacement_gradients.col(nodes[i]) = gradients.col(i);
+      place.displacement_basis[nodes[i]] = place.stress_basis[i];
+    }
+    all.push_back(place);
+  };
+  for (int k = 0; k < 3; ++k)
+    for (const auto& [point, weight] : composite_rule(cuts)) add(k, point, weight / 3);
+  return all;
+}
+
+const MacroElement& macro_element() {
+  static const MacroElement element = make();
+  return element;
+}
+
+}  // namespace signorini

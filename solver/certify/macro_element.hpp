@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "problem/field.hpp"
+
+namespace signorini {
+
+/// The triangle (0,0), (1,0), (0,1) cut into three by its centroid (Alfeld split): part k lies at edge k.
+///
+/// On it live symmetric stresses that are quadratic on each part, with continuous traction: the element of
+/// Johnson and Mercier (1978) in its quadratic form (Gong, Gopalakrishnan, Guzmán, Neilan 2023). Such a
+/// stress is determined by its traction on the three edges and its divergence up to three stresses that have
+/// neither. Displacements on it are quadratic on each part and continuous (the pair of Scott and Vogelius,
+/// which is stable here): ten nodes, the corners, the middles of the edges, the centroid, and the middles
+/// between corner i and the centroid.
+struct MacroElement {
+  static constexpr int kStresses = 54;  ///< per part, per node of P2, (xx, yy, xy)
+  static constexpr int kData = 18;      ///< traction at both ends of edge 0, 1, 2; divergence at the corners
+  static constexpr int kFree = 3;
+  static constexpr int kNodes = 10;
+
+  using FromData = Eigen::Matrix<double, kStresses, kData>;
+  using Free = Eigen::Matrix<double, kStresses, kFree>;
+
+  /// A stress with the given data, whose tractions are linear on the edges and whose divergence is linear on
+  /// the triangle. The traction is one per unit of the edge's parameter: τ n |e|. The data must balance: in
+  /// force and in moment.
+  FromData from_data;
+  /// The stresses without traction and divergence.
+  Free free;
+
+  /// Where values are wanted.
+  struct Place {
+    Point point;
+    double weight;  ///< all weights sum to 1/2
+    int part;
+    Eigen::Matrix<double, 6, 1> stress_basis;  ///< at the nodes of the part
+    Eigen::Matrix<double, 2, kNodes> displacement_gradients;
+    Eigen::Matrix<double, kNodes, 1> displacement_basis;
+  };
+
+  /// The points of the triangle rule on each part, or on `cuts`² similar triangles of each.
+  static std::vector<Place> places(int cuts);
+
+  /// (xx, yy, xy) of the stress with the given coefficients.
+  template <typename Coefficients>
+  static Eigen::Vector3d stress(const Place& place, const Coefficients& coefficients) {
+    return coefficients.template segment<18>(18 * place.part).template reshaped<Eigen::ColMajor>(3, 6) *
+           place.stress_basis;
+  }
+
+  /// The node with the given number.
+  static Point node(int number);
+};
+
+const MacroElement& macro_element();
+
+}  // namespace signorini

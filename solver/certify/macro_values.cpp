@@ -1,0 +1,165 @@
+#include "certify/macro_values.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+namespace signorini {
+namespace {
+
+constexpr int kInner = MacroRule::kInner;
+constexpr double kHalf = std::numbers::sqrt2 / 2;  ///< √½
+
+/// Mandel's tensor of J τ̂ Jᵀ / det J for τ̂ = (xx, yy, xy).
+Eigen::Matrix3d piola(const AffineMap& map) {
+  const double a = map.jacobian(0, 0), b = map.jacobian(0, 1), c = map.jacobian(1, 0), d = map.jacobian(1, 1);
+  Eigen::Matrix3d transform;
+  transform << a * a, b * b, 2 * a * b, c * c, d * d, 2 * c * d, a * c, b * d, a * d + b * c;
+  transform.row(2) *= std::numbers::sqrt2;
+  return transform / map.determinant;
+}
+
+/// Mandel's strain of v = Σ φ_i v_i from the gradients of the φ_i, the components of v in turns.
+template <int Nodes>
+Eigen::Matrix<double, 3, 2 * Nodes> strains(const Eigen::Matrix<double, 2, Nodes>& gradients) {
+  Eigen::Matrix<double, 3, 2 * Nodes> strain;
+  for (int i = 0; i < Nodes; ++i)
+    strain.template middleCols<2>(2 * i) << gradients(0, i), 0, 0, gradients(1, i), kHalf * gradients(1, i),
+        kHalf * gradients(0, i);
+  return strain;
+}
+
+/// (xx, yy, √2 xy) and the skew part (xy − yx) / √2 of σ_h from its coefficients, the rows in turns.
+Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 16> stresses(const AffineMap& map, const LocalVectors& row) {
+  Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 16> stress(4, 2 * row.cols());
+  for (int a = 0; a < row.cols(); ++a) {
+    const Vector tau = map.jacobian * row.col(a) / map.determinant;
+    stress.middleCols<2>(2 * a) << tau.x(), 0, 0, tau.y(), kHalf * tau.y(), kHalf * tau.x(), kHalf * tau.y(),
+        -kHalf * tau.x();
+  }
+  return stress;
+}
+
+}  // namespace
+
+MacroRule::MacroRule(const Spaces& spaces, int cuts) : places(MacroElement::places(cuts)) {
+  const MacroElement& element = macro_element();
+  for (const MacroElement::Place& place : places) {
+    Values at;
+    for (int k = 0; k < MacroElement::kData; ++k)
+      at.balanced.col(k) = MacroElement::stress(place, element.from_data.col(k));
+    for (int k = 0; k < MacroElement::kFree; ++k)
+      at.free.col(k) = MacroElement::stress(place, element.free.col(k));
+    at.basis = quadratic_basis(place.point);
+    at.gradients = quadratic_gradients(place.point);
+    at.inner_basis = place.displacement_basis.tail<kInner>();
+    at.inner_gradients = place.displacement_gradients.rightCols<kInner>();
+    at.stress = spaces.row.reference_values(place.point);
+    values.push_back(std::move(at));
+  }
+}
+
+Eigen::Vector3d mandel(const Tensor<2>& tensor) {
+  return {tensor[0], tensor[3], (tensor[1] + tensor[2]) * kHalf};
+}
+
+SymmetricLaw::SymmetricLaw(const Eigen::Matrix4d& c) {
+  Eigen::Matrix<double, 4, 3> from;
+  from << 1, 0, 0, 0, 0, kHalf, 0, 0, kHalf, 0, 1, 0;
+  compliance = from.transpose() * c * from;
+  stiffness = compliance.inverse();
+  factor = compliance.llt().matrixL();
+  const Eigen::Vector4d rotation(0, kHalf, -kHalf, 0);
+  skew_compliance = rotation.dot(c * rotation);
+}
+
+template <int Columns>
+MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
+                                  std::span<const SymmetricLaw> laws) {
+  const int points = rule.size();
+  const Eigen::Index columns = given.data.cols();
+  const Eigen::Matrix3d to_triangle = piola(map);
+  const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
+  const auto law = [&](int q) -> const SymmetricLaw& { return laws[laws.size() == 1 ? 0 : q]; };
+  const auto weight = [&](int q) { return rule.places[q].weight * map.determinant; };
+
+  // σ* is the stress with the data and the free one that brings it nearest to σ_h.
+  std::vector<Block<3>> sigma(points, Block<3>::Zero(3, columns)), balanced = sigma;
+  Block<Eigen::Dynamic> skew(points, columns);
+  Eigen::Matrix3d free_matrix = Eigen::Matrix3d::Zero();
+  Block<3> free_right = Block<3>::Zero(3, columns);
+  for (int q = 0; q < points; ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    const auto of_stress = stresses(map, at.stress);
+    sigma[q].noalias() = of_stress.template topRows<3>() * given.stress;
+    skew.row(q).noalias() = of_stress.row(3) * given.stress;
+    balanced[q].noalias() = (to_triangle * at.balanced).eval() * given.data;
+    const Eigen::Matrix3d own = to_triangle * at.free;
+    const Eigen::Matrix3d weighted = weight(q) * own.transpose() * law(q).compliance;
+    free_matrix += weighted * own;
+    free_right += weighted * (sigma[q] - balanced[q]);
+  }
+  const Block<3> free = free_matrix.ldlt().solve(free_right);
+
+  // v is v_h and what brings its strain nearest to C σ*.
+  std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));
+  Eigen::Matrix<double, 2 * kInner, 2 * kInner> inner_matrix = decltype(inner_matrix)::Zero();
+  Block<2 * kInner> inner_right = Block<2 * kInner>::Zero(2 * kInner, columns);
+  for (int q = 0; q < points; ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    balanced[q] += (to_triangle * at.free).eval() * free;
+    strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
+    if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
+    const auto own = strains<kInner>(to_gradients * at.inner_gradients);
+    const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law(q).stiffness;
+    inner_matrix += weighted * own;
+    inner_right += weighted * (law(q).compliance * balanced[q] - strains_of_v[q]);
+  }
+  inner = inner_matrix.ldlt().solve(inner_right);
+
+  gap.resize(3 * points, columns);
+  strain.resize(3 * points, columns);
+  correction.resize(4 * points, columns);
+  stress.resize(4 * points, columns);
+  for (int q = 0; q < points; ++q) {
+    const SymmetricLaw& own = law(q);
+    const double root = std::sqrt(weight(q)), of_skew = root * std::sqrt(own.skew_compliance);
+    const auto factor = own.factor.template triangularView<Eigen::Lower>();
+    const Block<3> all =
+        strains_of_v[q] + strains<kInner>(to_gradients * rule.values[q].inner_gradients) * inner;
+    strain.template middleRows<3>(3 * q) = root * factor.solve(all);
+    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * balanced[q] - all);
+    correction.template middleRows<3>(4 * q) = root * own.factor.transpose() * (balanced[q] - sigma[q]);
+    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma[q];
+    correction.row(4 * q + 3) = stress.row(4 * q + 3) = of_skew * skew.row(q);
+  }
+}
+
+template struct MacroValues<1>;
+template struct MacroValues<Eigen::Dynamic>;
+
+MacroNorms::MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law) {
+  constexpr int data = MacroElement::kData, displacement = 12;
+  const Eigen::Index functions = 2 * rule.values.front().stress.cols();
+  const Eigen::MatrixXd unit =
+      Eigen::MatrixXd::Identity(data + functions + displacement, data + functions + displacement);
+  const MacroValues<Eigen::Dynamic> values(
+      rule, map,
+      {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>(), {}},
+      std::span(&law, 1));
+  const auto factor = [](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+    return Eigen::HouseholderQR<Eigen::MatrixXd>(rows)
+        .matrixQR()
+        .topRows(rows.cols())
+        .triangularView<Eigen::Upper>();
+  };
+  gap = factor(values.gap);
+  strain = factor(values.strain);
+  correction = factor(values.correction.leftCols(data + functions));
+  stress = factor(values.stress.middleCols(data, functions));
+  inner = values.inner;
+}
+
+}  // namespace signorini

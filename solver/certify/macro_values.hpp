@@ -1,0 +1,87 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "certify/local_fields.hpp"
+#include "certify/macro_element.hpp"
+
+namespace signorini {
+
+/// Where the integrals over a macro-element are evaluated, with what does not depend on the triangle.
+struct MacroRule {
+  /// The triangle rule on each part of the macro-element, or on `cuts`² similar triangles of each.
+  MacroRule(const Spaces& spaces, int cuts);
+
+  int size() const { return static_cast<int>(places.size()); }
+
+  /// The inner nodes of the macro-element: those that are no nodes of P2 on the triangle.
+  static constexpr int kInner = MacroElement::kNodes - 6;
+
+  struct Values {
+    Eigen::Matrix<double, 3, MacroElement::kData> balanced;  ///< (xx, yy, xy) of the stresses with the data
+    Eigen::Matrix<double, 3, MacroElement::kFree> free;      ///< and of those without
+    Eigen::Matrix<double, 6, 1> basis;                       ///< of P2 on the triangle
+    Eigen::Matrix<double, 2, 6> gradients;
+    Eigen::Matrix<double, kInner, 1> inner_basis;
+    Eigen::Matrix<double, 2, kInner> inner_gradients;
+    LocalVectors stress;  ///< of the row space
+  };
+
+  std::vector<MacroElement::Place> places;
+  std::vector<Values> values;
+};
+
+/// (xx, yy, √2 xy) of the symmetric part.
+Eigen::Vector3d mandel(const Tensor<2>& tensor);
+
+/// C on the symmetric tensors (xx, yy, √2 xy) of Mandel, by its factor C = L Lᵀ, and on skew ones.
+struct SymmetricLaw {
+  explicit SymmetricLaw(const Eigen::Matrix4d& compliance);
+
+  Eigen::Matrix3d compliance, stiffness, factor;
+  double skew_compliance;
+};
+
+/// What the bound integrates over a triangle, for any number of columns of what describes it: the data of the
+/// macro-element, the coefficients of σ_h, and v_h at the nodes of P2 (x and y in turns). All is linear in
+/// them, so that the columns of the unit matrix give the operators of a shape, and a single column the values
+/// of one triangle. Rows: of every point, √weight times a tensor such that the square of the norm of a column
+/// is the integral.
+template <int Columns>
+struct MacroValues {
+  template <int Rows>
+  using Block = Eigen::Matrix<double, Rows, Columns>;
+
+  struct Given {
+    Block<MacroElement::kData> data;
+    Block<Eigen::Dynamic> stress;
+    Block<12> displacement;
+    /// Strains (Mandel) at the points that come to those of v_h; none if empty.
+    std::vector<Eigen::Vector3d> lifted;
+  };
+
+  /// The law at every point of the rule, or one for all.
+  MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
+              std::span<const SymmetricLaw> laws);
+
+  Block<Eigen::Dynamic> gap;         ///< C σ* − ε(v), in the norm of E
+  Block<Eigen::Dynamic> correction;  ///< σ* − σ_h, in the norm of C
+  Block<Eigen::Dynamic> stress;      ///< σ_h, in the norm of C
+  Block<Eigen::Dynamic> strain;      ///< ε(v), in the norm of E
+  /// The values of v at the inner nodes beyond those of v_h.
+  Block<2 * MacroRule::kInner> inner;
+};
+
+/// The same for all triangles of one shape and law, as triangular factors: the integrals are ‖gap z‖² with
+/// z = (data, stress, displacement), and so on. Squares of norms keep the digits that a quadratic form of the
+/// small difference of large numbers would lose.
+struct MacroNorms {
+  MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law);
+
+  Eigen::MatrixXd gap, correction, stress,
+      strain;  ///< correction: of (data, stress); stress: of stress alone
+  Eigen::MatrixXd inner;
+};
+
+}  // namespace signorini

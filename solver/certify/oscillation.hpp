@@ -1,0 +1,49 @@
+#pragma once
+
+#include "certify/tensor.hpp"
+#include "fem/discretization.hpp"
+
+namespace signorini {
+
+/// Column z: Πf at corner z of a triangle, the load that σ_h is in equilibrium with: the projection onto P_k.
+template <int D>
+Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t);
+
+/// The traction t on every edge of Γ_F.
+template <int D>
+class TractionField {
+ public:
+  explicit TractionField(const Discretization& problem);
+
+  bool acts_on(int edge) const { return condition_[edge]; }
+  /// At s ∈ [0, 1] from the first to the second point of an edge on which it acts.
+  Eigen::Matrix<double, D, 1> operator()(int edge, double s) const;
+
+ private:
+  const Mesh& mesh_;
+  std::vector<const Condition*> condition_;  ///< of each edge, null where there is no traction
+};
+
+/// What the discrete equilibrium leaves out of the load, in the energy norm: a bound of
+///
+///     (f − Πf, w) + <t − Πt, w>  ≤  oscillation · ‖w‖_E
+///
+/// on one triangle, for every displacement w. Π keeps what a rigid motion of the triangle sees, so that w
+/// counts only up to one: by the inequality of Payne and Weinberger, ‖w − w̄‖ ≤ h/π ‖∇w‖, and from it the
+/// trace inequality ‖w − w̄‖²_e ≤ |e|/|T| h² (1/π² + 1/π) ‖∇w‖².
+template <int D>
+class Oscillation {
+ public:
+  explicit Oscillation(const Discretization& problem) : problem_(problem), traction_(problem) {}
+
+  double operator()(int t, LawField<D>& law) const;
+
+ private:
+  double of_load(int t) const;
+  double of_traction(int edge) const;
+
+  const Discretization& problem_;
+  TractionField<D> traction_;
+};
+
+}  // namespace signorini

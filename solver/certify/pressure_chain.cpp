@@ -1,0 +1,183 @@
+#include "certify/pressure_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace signorini {
+namespace {
+
+class Chains {
+ public:
+  Chains(const Discretization& problem, const Eigen::MatrixXd& stress) : problem_(problem) {
+    int part = -1;
+    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
+      const auto& [a, b] = points(i);
+      const bool follows = part_of(i) == part && (a == all.back().back().end || b == all.back().back().end);
+      if (!follows) all.emplace_back();
+      const bool forward = follows ? a == all.back().back().end : !goes_on_from(a, i);
+      all.back().push_back(make_link(i, forward, stress));
+      part = part_of(i);
+    }
+  }
+
+  std::vector<Chain> all;
+
+ private:
+  int part_of(int i) const { return problem_.clearance.rows[problem_.clearance.edges[i].rows[0]].part; }
+  const std::array<int, 2>& points(int i) const {
+    return problem_.mesh.edges[problem_.clearance.edges[i].edge];
+  }
+
+  /// The next edge of the part begins in the point.
+  bool goes_on_from(int point, int i) const {
+    if (i + 1 == static_cast<int>(problem_.clearance.edges.size()) || part_of(i + 1) != part_of(i))
+      return false;
+    return points(i + 1)[0] == point || points(i + 1)[1] == point;
+  }
+
+  /// The forces from the outward fluxes; −σ_n is σ·n for the membrane. A constant pressure acts in equal
+  /// parts on both hats.
+  Link make_link(int number, bool forward, const Eigen::MatrixXd& stress) const {
+    const ContactEdge& contact = problem_.clearance.edges[number];
+    const auto& [a, b] = points(number);
+    Link link{number,       forward ? a : b, forward ? b : a,
+              contact.rows, {0, 0},          problem_.mesh.length(contact.edge)};
+    const int per_edge = problem_.spaces().traces_per_edge(), d = problem_.spaces().components;
+    const int t = problem_.mesh.edge_triangles[contact.edge][0];
+    const int first = problem_.mesh.local_edge(t, contact.edge) * per_edge;
+    for (int j = first; j < first + per_edge; j += d)
+      link.forces[problem_.traces.dof(t, j) % per_edge / d] =
+          d == 1 ? stress(j, t) : -contact.direction.dot(stress.col(t).segment<2>(j));
+    if (per_edge == d) link.forces = {link.forces[0] / 2, link.forces[0] / 2};
+    if (!forward) {
+      std::swap(link.forces[0], link.forces[1]);
+      std::swap(link.rows[0], link.rows[1]);
+    }
+    return link;
+  }
+
+  const Discretization& problem_;
+};
+
+double moment(const Chain& chain, const std::vector<double>& arms) {
+  double sum = 0;
+  for (std::size_t i = 0; i < chain.size(); ++i)
+    sum += chain[i].forces[0] * arms[i] + chain[i].forces[1] * arms[i + 1];
+  return sum;
+}
+
+double force(const Chain& chain) {
+  double sum = 0;
+  for (const Link& link : chain) sum += link.force();
+  return sum;
+}
+
+/// The forces of the linear pressure with the given values at the ends.
+std::array<double, 2> forces_of(double begin, double end, double length) {
+  return {length * (2 * begin + end) / 6, length * (begin + 2 * end) / 6};
+}
+
+}  // namespace
+
+std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress) {
+  return Chains(problem, stress).all;
+}
+
+AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
+                                 Transition transition)
+    : problem_(problem), chain_(std::move(chain)) {
+  if (problem.spaces().order == 1)
+    for (std::size_t node = 0; node <= chain_.size(); ++node) move_at_node(node, clearance, transition);
+  carry_deficits();
+  for (Link& link : chain_) spread(link);
+}
+
+bool AdmissibleChain::is_held(bool at_end) const {
+  const int row = at_end ? chain_.back().rows[1] : chain_.front().rows[0];
+  return problem_.clearance.rows[row].unknown < 0;
+}
+
+/// Across a node, from the edge before it to the edge behind it.
+void AdmissibleChain::move(std::size_t node, double force) {
+  if (node > 0) chain_[node - 1].forces[1] -= force;
+  if (node < chain_.size()) chain_[node].forces[0] += force;
+}
+
+bool AdmissibleChain::is_open(std::size_t link, const Eigen::VectorXd& clearance) const {
+  return clearance[chain_[link].rows[0]] > 0 || clearance[chain_[link].rows[1]] > 0;
+}
+
+/// The force on the hat of a node is not negative, and 0 if the node is open; neither of its edges is left
+/// with a negative share of it. Beyond the end of the chain Γ_D takes it.
+void AdmissibleChain::move_at_node(std::size_t node, const Eigen::VectorXd& clearance,
+                                   Transition transition) {
+  const bool first = node == 0, last = node == chain_.size();
+  if ((first || last) && !is_held(last)) return;
+  const double before = first ? 0 : chain_[node - 1].forces[1], behind = last ? 0 : chain_[node].forces[0];
+  const bool open_before = !first && is_open(node - 1, clearance),
+             open_behind = !last && is_open(node, clearance);
+  const bool empties = first || last || transition == Transition::free;
+  if (empties && open_behind != open_before)
+    move(node, open_behind ? -behind : before);
+  else if (behind < 0)
+    move(node, -behind);
+  else if (before < 0)
+    move(node, before);
+}
+
+/// What is still negative, from the tolerance of an iteration, is carried along the chain.
+void AdmissibleChain::carry_deficits() {
+  for (std::size_t i = 0; i + 1 < chain_.size(); ++i)
+    if (chain_[i].force() < 0) carry(i, i + 1);
+  for (std::size_t i = chain_.size(); i-- > 1;)
+    if (chain_[i].force() < 0) carry(i, i - 1);
+}
+
+/// Leaves the one edge with no force.
+void AdmissibleChain::carry(std::size_t from, std::size_t to) {
+  const double lack = chain_[from].force();
+  if (to > from)
+    move(to, lack);
+  else
+    move(from, -lack);
+}
+
+/// A linear pressure is nowhere negative if neither end has less than a third of the force.
+void AdmissibleChain::spread(Link& link) const {
+  const double force = std::max(0., link.force());
+  const double at_begin =
+      problem_.spaces().order == 0 ? force / 2 : std::clamp(link.forces[0], force / 3, 2 * force / 3);
+  link.forces = {at_begin, force - at_begin};
+}
+
+bool AdmissibleChain::balance(const Chain& given, const std::vector<double>& arms) {
+  Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
+  // Forces and moments of the pressure times 1 and times ξ, by its values at the ends of the edges.
+  const auto scaled = [&](std::size_t i, double begin, double end) {
+    const auto [p, q] = chain_[i].pressure();
+    if (problem_.spaces().order == 0) begin = end = (begin + end) / 2;
+    return forces_of(p * begin, q * end, chain_[i].length);
+  };
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const std::array<double, 2> by_one = scaled(i, 1, 1), by_arm = scaled(i, arms[i], arms[i + 1]);
+    matrix(0, 0) += by_one[0] + by_one[1];
+    matrix(0, 1) += by_arm[0] + by_arm[1];
+    matrix(1, 0) += by_one[0] * arms[i] + by_one[1] * arms[i + 1];
+    matrix(1, 1) += by_arm[0] * arms[i] + by_arm[1] * arms[i + 1];
+  }
+  const Eigen::Vector2d lack(force(given) - force(chain_), moment(given, arms) - moment(chain_, arms));
+  const Eigen::FullPivLU<Eigen::Matrix2d> lu(matrix);
+  if (!lu.isInvertible()) return lack.isZero(1e-12 * std::abs(force(given)));
+  const Eigen::Vector2d mu = lu.solve(lack);
+  bool pushes = true;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const double begin = 1 + mu[0] + mu[1] * arms[i], end = 1 + mu[0] + mu[1] * arms[i + 1];
+    pushes = pushes && (chain_[i].force() == 0 || (begin >= 0 && end >= 0));
+    chain_[i].forces = scaled(i, begin, end);
+  }
+  return pushes;
+}
+
+}  // namespace signorini

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "fem/discretization.hpp"
+
+namespace signorini {
+
+/// One edge of a chain as it is run through, from point `begin` to point `end`.
+struct Link {
+  int number;  ///< in the clearance space
+  int begin, end;
+  std::array<int, 2> rows;       ///< of the clearance, at begin and end
+  std::array<double, 2> forces;  ///< ∫ p φ for the hat functions φ of begin and end
+  double length;
+
+  double force() const { return forces[0] + forces[1]; }
+  /// The linear pressure with these forces, at begin and end.
+  std::array<double, 2> pressure() const {
+    return {(4 * forces[0] - 2 * forces[1]) / length, (4 * forces[1] - 2 * forces[0]) / length};
+  }
+};
+
+/// Consecutive contact edges of one part.
+using Chain = std::vector<Link>;
+
+/// All chains, with the forces of −σ_hn.
+std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress);
+
+/// A chain whose pressure is made admissible: forces are moved from edge to edge and from end to end, none
+/// further than it must.
+class AdmissibleChain {
+ public:
+  /// What an edge does that is open at one end and closed at the other: it takes its share of the force at
+  /// the closed end, or none.
+  enum class Transition { loaded, free };
+
+  AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
+                  Transition transition);
+
+  const Chain& links() const { return chain_; }
+
+  /// Scales the pressure by 1 + μ₀ + μ₁ ξ, with ξ the given arm at each node, so that force and moment are
+  /// those of the given chain again. Returns false if the pressure would turn negative.
+  bool balance(const Chain& given, const std::vector<double>& arms);
+
+  /// An end of the chain lies on Γ_D.
+  bool is_held(bool at_end) const;
+
+ private:
+  void move(std::size_t node, double force);
+  void move_at_node(std::size_t node, const Eigen::VectorXd& clearance, Transition transition);
+  void carry_deficits();
+  void carry(std::size_t from, std::size_t to);
+  void spread(Link& link) const;
+  bool is_open(std::size_t link, const Eigen::VectorXd& clearance) const;
+
+  const Discretization& problem_;
+  Chain chain_;
+};
+
+}  // namespace signorini

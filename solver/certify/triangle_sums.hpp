@@ -1,0 +1,90 @@
+#pragma once
+
+#include "certify/admissible_displacement.hpp"
+#include "certify/contact_pressure.hpp"
+#include "certify/edge_tractions.hpp"
+#include "certify/macro_values.hpp"
+#include "certify/tensor.hpp"
+#include "fem/per_shape.hpp"
+
+namespace signorini {
+
+/// What one triangle adds to the bound.
+struct TriangleSums {
+  double gap = 0;         ///< ‖C σ* − ε(v)‖²_E
+  double correction = 0;  ///< ‖σ* − σ_h‖²_C
+  double stress = 0;      ///< ‖σ_h‖²_C
+  double energy = 0;      ///< ½ ‖ε(v)‖²_E − (f, v)
+
+  TriangleSums& operator+=(const TriangleSums& other);
+};
+
+/// Membrane: σ* is σ_h and the curl of the potential of the pressure, v is v_h.
+class MembraneSums {
+ public:
+  MembraneSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
+               const ContactPressure& pressure);
+
+  TriangleSums operator()(int t, LawField<1>& law) const;
+
+ private:
+  /// Where the integrals are evaluated, with what does not depend on the triangle.
+  struct Rule {
+    Rule(const Spaces& spaces, int cuts);
+
+    std::vector<WeightedPoint> points;
+    StressValues<1> stress;
+    std::vector<Eigen::Matrix<double, 6, 1>> basis;
+    std::vector<Eigen::Matrix<double, 2, 6>> gradients;
+  };
+
+  Quadratic<1> potential_on(int t) const;
+
+  const Discretization& problem_;
+  const Solution& solution_;
+  const AdmissibleDisplacement& v_;
+  const ContactPressure& pressure_;
+  Rule plain_, composite_;
+};
+
+/// Elastic body: σ* is the symmetric stress on the macro-element that has the tractions of EdgeTractions, is
+/// in equilibrium with the discrete load and lies nearest to σ_h. v is v_h, quadratic on each part of the
+/// macro-element, where the values inside the triangle minimise ‖C σ* − ε(v)‖_E: as ν → 1/2 its divergence
+/// follows that of the stress, because the mean over the edges of v_h balances the volume.
+class ElasticSums {
+ public:
+  ElasticSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
+              const EdgeTractions& tractions);
+
+  TriangleSums operator()(int t, LawField<2>& law);
+
+ private:
+  using Given = MacroValues<1>::Given;
+
+  /// The sums of a shape as squares of norms, once it has come up so often that this pays: a structured mesh
+  /// has a few shapes, another hardly the same twice.
+  struct Shape {
+    int seen = 0;
+    std::unique_ptr<const MacroNorms> norms;
+  };
+
+  using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
+
+  Eigen::Matrix<double, MacroElement::kData, 1> data_of(int t, const AffineMap& map) const;
+  Given given_on(int t, const AffineMap& map) const;
+  const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
+  std::vector<SymmetricLaw> laws_at(const MacroRule& rule, const AffineMap& map, LawField<2>& law) const;
+  std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
+  double work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+                      const Inner& inner) const;
+
+  const Discretization& problem_;
+  const Solution& solution_;
+  const AdmissibleDisplacement& v_;
+  const EdgeTractions& tractions_;
+  const bool has_load_;
+  const MacroRule plain_, composite_;
+  PerShape<Shape> shapes_;
+};
+
+}  // namespace signorini

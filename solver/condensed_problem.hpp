@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "contact/active_set.hpp"
+#include "contact/condense.hpp"
+#include "problem/settings.hpp"
+#include "summarize.hpp"
+
+namespace signorini {
+
+/// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
+/// begins from the start, clearances ≥ 0, or from 0 if there is none.
+ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
+                             const Eigen::VectorXd& start = {});
+
+/// A problem with everything but the contact unknowns eliminated, by an operator that was kept or is made.
+class CondensedProblem {
+ public:
+  /// Makes the operator on the mesh, which is mended where the spaces are not stable on it, or takes one that
+  /// was kept; and takes one forward solve. Throws Cancelled, SolveError and what Cholesky throws. The
+  /// problem must outlive it.
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
+
+  const Discretization& discretization() const { return *discretization_; }
+  const std::shared_ptr<const Operator>& used_operator() const { return operator_; }
+  const ContactComplement& contact() const { return condensed_->contact(); }
+
+  /// Finds the clearances, beginning as find_clearance() does, and from them all fields. The method is one on
+  /// the contact complement, not the paper's form.
+  Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {});
+
+ private:
+  void make(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
+  Fields complete(const ContactResult& found, const std::vector<int>& exactly_open, Progress& progress);
+
+  std::shared_ptr<const Operator> operator_;
+  bool reused_;
+  std::unique_ptr<const Discretization> discretization_;
+  std::unique_ptr<CondensedContact> condensed_;
+};
+
+}  // namespace signorini

@@ -1,0 +1,203 @@
+#include "contact/accelerated_uzawa.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <Spectra/MatOp/DenseSymMatProd.h>
+#include <Spectra/SymEigsSolver.h>
+
+#include "contact/multilevel_scaling.hpp"
+#include "contact/residuals.hpp"
+
+namespace signorini {
+namespace {
+
+/// An upper bound of the largest eigenvalue of D^(-1/2) S D^(-1/2), D the diagonal of S. Lanczos comes from
+/// below, to the tolerance; the margin covers that.
+double largest_eigenvalue(const ContactComplement& contact) {
+  const Eigen::Index n = contact.size();
+  if (n == 1) return 1;
+  const Eigen::VectorXd root = contact.s.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = root.asDiagonal() * contact.s * root.asDiagonal();
+  constexpr double tolerance = 1e-2, margin = 1.02;
+  Spectra::DenseSymMatProd<double> product(scaled);
+  Spectra::SymEigsSolver<Spectra::DenseSymMatProd<double>> lanczos(product, 1, std::min<Eigen::Index>(n, 20));
+  lanczos.init();
+  lanczos.compute(Spectra::SortRule::LargestAlge, 100, tolerance, Spectra::SortRule::LargestAlge);
+  if (lanczos.info() == Spectra::CompInfo::Successful) return margin * lanczos.eigenvalues()[0];
+  return scaled.cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+/// The iterate λ with its gradient g = S λ − c, that is w p, and the direction of the conjugate gradients.
+class Iterate {
+ public:
+  Iterate(const ContactComplement& contact, const Eigen::VectorXd& start)
+      : contact_(contact),
+        diagonal_(contact.s.diagonal()),
+        step_(kPart * 2 / largest_eigenvalue(contact)),
+        pressure_scale_(contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
+        scaling_(contact.s),
+        lambda_(start.size() ? start : Eigen::VectorXd::Zero(contact.size())) {
+    evaluate_gradient();
+    begin_anew();
+  }
+
+  Iteration step() {
+    last_ = lambda_;
+    if (!is_proportional())
+      release();
+    else if (!conjugate_step())
+      expand();
+    return record();
+  }
+
+  const Eigen::VectorXd& clearance() const { return lambda_; }
+
+  ContactResiduals residuals() const {
+    return contact_residuals(lambda_, g_.cwiseQuotient(contact_.weight), contact_.weight, pressure_scale_);
+  }
+
+  /// The conjugate gradients carry g along; this puts an end to what rounding has made of it.
+  void refresh() {
+    evaluate_gradient();
+    begin_anew();
+  }
+
+ private:
+  /// Of the longest step with which the expansion still never raises the energy.
+  static constexpr double kPart = 0.95;
+
+  void evaluate_gradient() {
+    g_.noalias() = contact_.s * lambda_;
+    g_ -= contact_.c;
+  }
+
+  /// Whether what could still be gained on the open part outweighs what closed unknowns gain by opening, both
+  /// in the norm of the diagonal.
+  bool is_proportional() const {
+    double open = 0, closed = 0;
+    for (Eigen::Index i = 0; i < g_.size(); ++i) {
+      if (lambda_[i] > 0)
+        open += std::min(diagonal_[i] * lambda_[i] / step_, g_[i]) * g_[i] / diagonal_[i];
+      else if (g_[i] < 0)
+        closed += g_[i] * g_[i] / diagonal_[i];
+    }
+    return closed <= open;
+  }
+
+  /// Opens what pulls, as far as the energy falls.
+  void release() {
+    for (Eigen::Index i = 0; i < g_.size(); ++i)
+      direction_[i] = lambda_[i] > 0 ? 0 : std::max(-g_[i], 0.) / diagonal_[i];
+    multiply_direction();
+    if (is_flat()) throw SolveError(kSingular);
+    move(-g_.dot(direction_) / curvature_);
+    begin_anew();
+  }
+
+  /// The longest step along the direction that closes nothing beyond 0.
+  double feasible_step() const {
+    double longest = std::numeric_limits<double>::infinity();
+    for (Eigen::Index i = 0; i < g_.size(); ++i)
+      if (direction_[i] < 0) longest = std::min(longest, -lambda_[i] / direction_[i]);
+    return longest;
+  }
+
+  /// One step of the conjugate gradients on the open part; false if it ran into λ = 0 on its way, and stopped
+  /// there.
+  bool conjugate_step() {
+    const double descent = -g_.dot(direction_);
+    if (descent <= 0) return true;  // nothing is left to gain
+    multiply_direction();
+    const double most = feasible_step();
+    if (is_flat() && std::isinf(most)) throw SolveError(kSingular);
+    if (is_flat() || descent > most * curvature_) {
+      move(most);
+      return false;
+    }
+    move(descent / curvature_);
+    precondition();
+    direction_ = -z_ + (z_.dot(s_direction_) / curvature_) * direction_;
+    return true;
+  }
+
+  /// A Uzawa step of what is open.
+  void expand() {
+    for (Eigen::Index i = 0; i < g_.size(); ++i)
+      if (lambda_[i] > 0) lambda_[i] = std::max(0., lambda_[i] - step_ * g_[i] / diagonal_[i]);
+    refresh();
+  }
+
+  void begin_anew() {
+    open_.clear();
+    for (int i = 0; i < static_cast<int>(lambda_.size()); ++i)
+      if (lambda_[i] > 0) open_.push_back(i);
+    scaling_.restrict_to(open_);
+    precondition();
+    direction_ = -z_;
+  }
+
+  void precondition() {
+    free_gradient_.setZero(g_.size());
+    for (const int i : open_) free_gradient_[i] = g_[i];
+    scaling_.apply(free_gradient_, z_);
+  }
+
+  void multiply_direction() {
+    s_direction_.noalias() = contact_.s * direction_;
+    curvature_ = direction_.dot(s_direction_);
+  }
+
+  /// Contact alone may hold the body: along its motion the energy has no curvature.
+  bool is_flat() const { return curvature_ <= kRounding * direction_.cwiseAbs2().dot(diagonal_); }
+
+  void move(double length) {
+    lambda_ = (lambda_ + length * direction_).cwiseMax(0);
+    g_ += length * s_direction_;
+  }
+
+  Iteration record() const {
+    const ContactResiduals left = residuals();
+    Iteration iteration;
+    iteration.clearance_change = relative_change(last_, lambda_);
+    iteration.penetration = left.penetration;
+    iteration.tension = left.tension;
+    iteration.complementarity = left.complementarity;
+    iteration.active = static_cast<int>((lambda_.array() == 0).count());
+    return iteration;
+  }
+
+  static constexpr double kRounding = 1e-13;
+  static constexpr const char* kSingular =
+      "the contact problem is singular: contact holds the body only just";
+
+  const ContactComplement& contact_;
+  const Eigen::VectorXd diagonal_;
+  const double step_;
+  const double pressure_scale_;
+  MultilevelScaling scaling_;
+  Eigen::VectorXd lambda_, last_, g_;
+  std::vector<int> open_;              ///< where the conjugate gradients work
+  Eigen::VectorXd free_gradient_, z_;  ///< g there, else 0; B times it
+  Eigen::VectorXd direction_, s_direction_;
+  double curvature_ = 0;  ///< dᵀ S d
+};
+
+}  // namespace
+
+ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
+                                Progress& progress, const Eigen::VectorXd& start) {
+  Iterate iterate(contact, start);
+  const auto converged = [&] { return iterate.residuals().largest() <= settings.tolerance; };
+  while (progress.iterations() < settings.max_iterations) {
+    const bool in_time = progress.record(iterate.step());
+    if (converged()) {
+      iterate.refresh();
+      if (converged()) return {iterate.clearance(), Outcome::converged};
+    }
+    if (!in_time) return {iterate.clearance(), Outcome::time_limit};
+  }
+  return {iterate.clearance(), Outcome::iteration_limit};
+}
+
+}  // namespace signorini

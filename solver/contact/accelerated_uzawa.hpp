@@ -1,0 +1,17 @@
+#pragma once
+
+#include "contact/active_set.hpp"
+
+namespace signorini {
+
+/// The Uzawa iteration λ ← max(0, λ + ρ σ_n(λ)) with the displacement eliminated exactly: a projected
+/// gradient in which σ_n is affine with the matrix S. The step is ρ_i = w_i / (L S_ii), with L a bound of the
+/// largest eigenvalue of S scaled by its diagonal (Lanczos). Between such steps, which find out what is open,
+/// conjugate gradients with a multilevel scaling work on the open part (MPRGP: Dostál, Schöberl 2005; Dostál,
+/// *Optimal quadratic programming algorithms*, 2009, chapter 5): the count hardly grows with 1/h. Converges
+/// for every positive definite S, and for a semidefinite one if the problem has a solution, at every scale of
+/// units, from every start ≥ 0; without one, from 0. Throws SolveError if nothing holds the body.
+ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
+                                Progress& progress, const Eigen::VectorXd& start = {});
+
+}  // namespace signorini

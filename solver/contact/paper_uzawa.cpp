@@ -1,0 +1,212 @@
+#include "contact/paper_uzawa.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "contact/residuals.hpp"
+#include "fem/per_shape.hpp"
+#include "system/elimination.hpp"
+
+namespace signorini {
+namespace {
+
+/// The operator of the iteration does not expand distances when it converges, so increments do not grow;
+/// this factor over the first one is divergence beyond doubt.
+constexpr double kDivergence = 1e8;
+
+/// What the elimination of a triangle shape gives.
+struct Shape {
+  LocalMatrix stiffness;     ///< K_r
+  LocalMatrix coupling;      ///< P
+  LocalMatrix divergence;    ///< D
+  LocalMatrix mass_inverse;  ///< V⁻¹
+};
+
+/// One local matrix out of a column of them. Its products are lazyProduct(): it is so small that the call of
+/// a kernel for large matrices would cost more than the product.
+auto local(const Eigen::MatrixXd& columns, int triangle, int rows) {
+  return Eigen::Map<const Eigen::MatrixXd>(columns.col(triangle).data(), rows, columns.rows() / rows);
+}
+
+}  // namespace
+
+UzawaIteration::UzawaIteration(const Discretization& problem, const PaperUzawa& settings, Progress& progress)
+    : problem_(problem), settings_(settings) {
+  eliminate(progress);
+  start();
+}
+
+void UzawaIteration::eliminate(Progress& progress) {
+  const int triangles = problem_.triangles();
+  const int n = problem_.traces.dofs_per_triangle(), nv = problem_.spaces().displacements();
+  coupling_.resize(n * nv, triangles);
+  divergence_.resize(nv * nv, triangles);
+  load_.resize(nv, triangles);
+  stiffness_of_.assign(triangles, -1);
+  ElementSum matrix;
+  matrix.size = problem_.traces.free_unknowns();
+  matrix.per_element = n;
+  PerShape<Shape> shapes(problem_);
+  for (int t = 0; t < triangles; ++t) {
+    progress.check_in(t);
+    const Shape& shape = shapes(t, [&](const ElementMatrices& matrices) -> Shape {
+      const AugmentedElimination elimination(matrices, problem_.spaces(), settings_.augmentation);
+      return {elimination.stiffness(), elimination.coupling(), elimination.divergence(),
+              matrices.displacement_mass.inverse()};
+    });
+    load_.col(t).noalias() = shape.mass_inverse.lazyProduct(problem_.load.col(t));
+    coupling_.col(t) = shape.coupling.reshaped();
+    divergence_.col(t) = shape.divergence.reshaped();
+    if (add_free(matrix, t, shape.stiffness)) continue;
+    stiffness_of_[t] = static_cast<int>(stiffness_.size());
+    stiffness_.push_back(shape.stiffness);
+  }
+  progress.enter(Phase::factorize);
+  factor_ = std::make_unique<const Cholesky>(matrix, 0, progress);
+}
+
+/// Adds the stiffness of a triangle between its free unknowns; true if all of them are.
+bool UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stiffness) const {
+  const TraceSpace& traces = problem_.traces;
+  LocalMatrix turned = stiffness;
+  if (traces.is_turned(t)) turned = traces.to_xy(t).transpose() * stiffness * traces.to_xy(t);
+  bool all = true;
+  for (int i = 0; i < traces.dofs_per_triangle(); ++i) {
+    const int dof = traces.dof(t, i);
+    all = all && traces.is_free(dof);
+    matrix.unknowns.push_back(traces.is_free(dof) ? traces[dof].unknown : -1);
+  }
+  matrix.matrix_of.push_back(t);
+  matrix.matrices.insert(matrix.matrices.end(), turned.data(), turned.data() + turned.size());
+  matrix.centres.push_back(problem_.mesh.centroid(t));
+  return all;
+}
+
+void UzawaIteration::start() {
+  displacement_ = Eigen::MatrixXd::Constant(load_.rows(), load_.cols(), settings_.initial_displacement);
+  clearance_.resize(problem_.clearance.unknowns);
+  weight_.resize(problem_.clearance.unknowns);
+  const double u = settings_.initial_displacement;
+  for (const ContactEdge& contact : problem_.clearance.edges) {
+    const double normal_displacement =
+        problem_.spaces().components == 1 ? -u : u * contact.direction.sum();
+    for (int j = 0; j <= problem_.spaces().order; ++j) {
+      const ClearanceRow& row = problem_.clearance.rows[contact.rows[j]];
+      if (row.unknown < 0) continue;
+      clearance_[row.unknown] = std::max(0., row.gap - normal_displacement);
+      weight_[row.unknown] = row.weight;
+    }
+  }
+  x_ = Eigen::VectorXd::Zero(problem_.traces.unknowns());
+  imbalance_.resizeLike(load_);
+}
+
+void UzawaIteration::solve_first_equation() {
+  const int n = problem_.traces.dofs_per_triangle(), free = problem_.traces.free_unknowns();
+  right_ = problem_.traces.traction().head(free);
+  x_.head(free).setZero();
+  x_.tail(clearance_.size()) = clearance_;
+  for (int t = 0; t < problem_.triangles(); ++t) {
+    // t − E σ of the data alone: P (u + r Πf) − K_r m with the free traces at 0.
+    const LocalVector w = displacement_.col(t) + settings_.augmentation * load_.col(t);
+    LocalVector flux = local(coupling_, t, n).lazyProduct(w);
+    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * problem_.traces.values(t, x_);
+    if (problem_.traces.is_turned(t)) flux = (problem_.traces.to_xy(t).transpose() * flux).eval();
+    for (int j = 0; j < n; ++j) {
+      const int dof = problem_.traces.dof(t, j);
+      if (problem_.traces.is_free(dof)) right_[problem_.traces[dof].unknown] += flux[j];
+    }
+  }
+  factor_->solve(right_, workspace_);
+  x_.head(free) = right_;
+}
+
+void UzawaIteration::update_displacement() {
+  const int n = problem_.traces.dofs_per_triangle();
+  const LocalMatrix inverse_mass = problem_.spaces().displacement_mass.inverse();
+  last_displacement_ = displacement_;
+  for (int t = 0; t < problem_.triangles(); ++t) {
+    const LocalVector w = displacement_.col(t) + settings_.augmentation * load_.col(t);
+    const LocalVector m = problem_.traces.values(t, x_);
+    LocalVector divergence = local(coupling_, t, n).transpose().lazyProduct(m);
+    divergence -= local(divergence_, t, static_cast<int>(w.size())).lazyProduct(w);
+    const double determinant = AffineMap(problem_.mesh.corners(t)).determinant;
+    imbalance_.col(t) = inverse_mass.lazyProduct(divergence) / determinant + load_.col(t);
+  }
+  displacement_ += settings_.rho * imbalance_;
+}
+
+/// <−σ_n^m, φ_i> for the contact unknowns, from the traces and displacements of σ^m.
+Eigen::VectorXd UzawaIteration::contact_force() const {
+  const int n = problem_.traces.dofs_per_triangle();
+  const Eigen::VectorXd rows = contact_forces(problem_, [&](int t) -> LocalVector {
+    const LocalVector w = last_displacement_.col(t) + settings_.augmentation * load_.col(t);
+    return stiffness_[stiffness_of_[t]] * problem_.traces.values(t, x_) - local(coupling_, t, n) * w;
+  });
+  Eigen::VectorXd force(clearance_.size());
+  for (std::size_t i = 0; i < problem_.clearance.rows.size(); ++i)
+    if (problem_.clearance.rows[i].unknown >= 0) force[problem_.clearance.rows[i].unknown] = rows[i];
+  return force;
+}
+
+void UzawaIteration::update_clearance() {
+  last_clearance_ = clearance_;
+  pressure_ = contact_force().cwiseQuotient(weight_);
+  clearance_ = (clearance_ - settings_.rho * pressure_).cwiseMax(0);
+}
+
+Iteration UzawaIteration::record() {
+  const double imbalance = imbalance_.norm();
+  if (first_imbalance_ == 0) first_imbalance_ = std::max(imbalance, load_.norm());
+  largest_pressure_ = std::max(largest_pressure_, pressure_.lpNorm<Eigen::Infinity>());
+  const ContactResiduals left = contact_residuals(clearance_, pressure_, weight_, largest_pressure_);
+  Iteration iteration;
+  iteration.displacement_change = relative_change(last_displacement_, displacement_);
+  iteration.clearance_change = relative_change(last_clearance_, clearance_);
+  iteration.equilibrium = first_imbalance_ > 0 ? imbalance / first_imbalance_ : 0;
+  iteration.penetration = left.penetration;
+  iteration.tension = left.tension;
+  iteration.complementarity = left.complementarity;
+  iteration.active = static_cast<int>((clearance_.array() == 0).count());
+  return iteration;
+}
+
+Outcome UzawaIteration::run(Progress& progress) {
+  double first_change = 0;
+  while (progress.iterations() < settings_.max_iterations) {
+    solve_first_equation();
+    update_displacement();
+    update_clearance();
+    const double change =
+        (displacement_ - last_displacement_).lpNorm<1>() + (clearance_ - last_clearance_).lpNorm<1>();
+    if (progress.iterations() == 0) first_change = change;
+    if (!std::isfinite(change)) {
+      displacement_ = last_displacement_;
+      clearance_ = last_clearance_;
+      return Outcome::diverged;
+    }
+    const Iteration iteration = record();
+    const bool in_time = progress.record(iteration);
+    if (change > kDivergence * first_change) return Outcome::diverged;
+    if (*iteration.displacement_change <= settings_.tolerance) return Outcome::converged;
+    if (!in_time) return Outcome::time_limit;
+  }
+  return Outcome::iteration_limit;
+}
+
+Eigen::MatrixXd UzawaIteration::stress() const {
+  Eigen::MatrixXd stress(problem_.spaces().stresses(), problem_.mesh.triangles.size());
+  PerShape<AugmentedElimination> eliminations(problem_);
+  for (int t = 0; t < problem_.triangles(); ++t) {
+    const AugmentedElimination& elimination = eliminations(t, [&](const ElementMatrices& matrices) {
+      return AugmentedElimination(matrices, problem_.spaces(), settings_.augmentation);
+    });
+    stress.col(t) = elimination.stress(problem_.traces.values(t, x_),
+                                       last_displacement_.col(t) + settings_.augmentation * load_.col(t));
+  }
+  return stress;
+}
+
+}  // namespace signorini

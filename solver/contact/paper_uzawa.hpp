@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+
+#include "fem/discretization.hpp"
+#include "problem/settings.hpp"
+#include "progress.hpp"
+#include "solution.hpp"
+#include "system/cholesky.hpp"
+
+namespace signorini {
+
+/// The paper's Uzawa iteration (section 5, with paper-notes' corrections) to the letter: σ^m solves the
+/// augmented first equation for u^m and λ^m; then
+///
+///     u^{m+1} = u^m + ρ Π_V (div σ^m + f),    λ^{m+1} = max(0, λ^m + ρ σ_n^m),
+///
+/// with the clip at the nodes in the lumped inner product; it stops by the paper's criterion. The matrix
+/// K_r in the free traces is factored once; one iteration is one solve with it.
+class UzawaIteration {
+ public:
+  /// Eliminates and factors. Throws Cancelled and what Cholesky throws.
+  UzawaIteration(const Discretization& problem, const PaperUzawa& settings, Progress& progress);
+
+  /// Iterates until the criterion is met, the iterates grow beyond bounds, or a limit is reached. What
+  /// remains is the last finite iterate.
+  Outcome run(Progress& progress);
+
+  Eigen::MatrixXd stress() const;                                        ///< σ^m, a column a triangle
+  const Eigen::MatrixXd& displacement() const { return displacement_; }  ///< u^{m+1}, a column a triangle
+  const Eigen::VectorXd& clearance() const { return clearance_; }        ///< λ^{m+1}, the contact unknowns
+  const Eigen::VectorXd& coupling() const { return x_; }                 ///< traces and rotations of σ^m
+
+ private:
+  void eliminate(Progress& progress);
+  bool add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
+  void start();
+  void solve_first_equation();
+  void update_displacement();
+  void update_clearance();
+  Iteration record();
+  Eigen::VectorXd contact_force() const;
+
+  const Discretization& problem_;
+  const PaperUzawa settings_;
+
+  std::unique_ptr<const Cholesky> factor_;
+  Cholesky::Workspace workspace_;
+  std::vector<LocalMatrix> stiffness_;     ///< K_r of the triangles on Γ_D or Γ_C only
+  std::vector<int> stiffness_of_;          ///< its index for each triangle, or -1
+  Eigen::MatrixXd coupling_, divergence_;  ///< P and D, a column a triangle
+  Eigen::MatrixXd load_;                   ///< Π_V f, a column a triangle
+  Eigen::VectorXd weight_;                 ///< <1, φ_i> of the contact unknowns
+
+  Eigen::VectorXd x_;  ///< traces for the current data, and λ^m behind them
+  Eigen::VectorXd right_;
+  Eigen::MatrixXd displacement_, last_displacement_;
+  Eigen::VectorXd clearance_, last_clearance_;
+  Eigen::MatrixXd imbalance_;  ///< Π_V (div σ^m + f), a column a triangle
+  Eigen::VectorXd pressure_;   ///< −σ_n^m of the contact unknowns
+  double first_imbalance_ = 0, largest_pressure_ = 0;
+};
+
+}  // namespace signorini

@@ -1,0 +1,187 @@
+#include "contact/residuals.hpp"
+
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "fem/per_shape.hpp"
+
+namespace signorini {
+namespace {
+
+/// value / scale; of nothing, nothing is 0 and anything is all of it.
+double relative(double value, double scale) {
+  if (value == 0) return 0;
+  return scale > 0 ? value / scale : 1;
+}
+
+/// One pass over the triangles that gathers what the residuals of equilibrium, of the constitutive law and
+/// of symmetry need.
+class Balance {
+ public:
+  Balance(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& problem)
+      : solution_(solution),
+        problem_(problem),
+        per_edge_(problem.spaces().traces_per_edge()),
+        traces_(static_cast<int>(problem.mesh.edges.size()) * per_edge_),
+        flux_(Eigen::VectorXd::Zero(traces_)),
+        trace_(Eigen::VectorXd::Zero(traces_)),
+        skew_(Eigen::VectorXd::Zero(problem.mesh.points.size())),
+        skew_terms_(skew_),
+        shapes_(problem) {
+    for (int t = 0; t < problem.triangles(); ++t) add_triangle(t);
+    compare_with_boundary(clearance);
+  }
+
+  /// ‖σ_h‖, or what counts as no stress at all.
+  double stress_norm() const { return std::max(std::sqrt(stress_square_), no_stress()); }
+
+  double equilibrium() const {
+    const double size = std::sqrt(problem_.mesh.area());
+    const double volume =
+        relative(std::sqrt(imbalance_square_), std::sqrt(load_square_) + stress_norm() / size);
+    return std::max(volume, relative(flux_.lpNorm<Eigen::Infinity>(), std::max(largest_flux_, no_stress())));
+  }
+
+  double constitutive() const {
+    return relative(std::max(trace_.lpNorm<Eigen::Infinity>(), interior_), largest_term_);
+  }
+
+  double symmetry() const {
+    const double edge = std::sqrt(problem_.mesh.area() / problem_.triangles());
+    return relative(skew_.lpNorm<Eigen::Infinity>(),
+                    std::max(skew_terms_.lpNorm<Eigen::Infinity>(), edge * no_stress()));
+  }
+
+ private:
+  /// A body that moves without strain has only rounding for stress, and nothing to compare it with. This is a
+  /// small part of ‖σ‖ for displacements of the same size that strain the body as a whole: the diagonal of M
+  /// is a compliance.
+  double no_stress() const { return 1e-4 * relative(largest_term_, largest_compliance_); }
+
+  void add_triangle(int t) {
+    const Shape& shape = shapes_(t, [&](const ElementMatrices& matrices) -> Shape {
+      const LocalMatrix& mass = matrices.displacement_mass;
+      return {matrices, mass.inverse(), problem_.element.stress_mass(problem_.mesh, t)};
+    });
+    const ElementMatrices& matrices = shape.matrices;
+    const LocalVector load = problem_.load.col(t);
+    const LocalVector sigma = solution_.stress.col(t), u = solution_.displacement.col(t);
+    const LocalMatrix& b = problem_.spaces().divergence;
+    const LocalVector imbalance = b.lazyProduct(sigma) + load;
+    imbalance_square_ += imbalance.dot(shape.mass_inverse.lazyProduct(imbalance));
+    load_square_ += load.dot(shape.mass_inverse.lazyProduct(load));
+    stress_square_ += sigma.dot(shape.stress_mass.lazyProduct(sigma));
+
+    // M σ + Bᵀ u + Aᵀ γ is m on the edges (seen from this side), and 0 for the functions without flux.
+    const LocalVector strain = matrices.compliance.lazyProduct(sigma), rise = b.transpose().lazyProduct(u);
+    LocalVector term = strain + rise;
+    for (int z = 0; z < matrices.skew.rows(); ++z) add_corner(t, z, matrices.skew.row(z), sigma, term);
+    largest_term_ =
+        std::max({largest_term_, strain.lpNorm<Eigen::Infinity>(), rise.lpNorm<Eigen::Infinity>()});
+    largest_compliance_ = std::max(largest_compliance_, matrices.compliance.diagonal().maxCoeff());
+    const int n = problem_.traces.traces_per_triangle();
+    if (term.size() > n)
+      interior_ = std::max(interior_, term.tail(term.size() - n).lpNorm<Eigen::Infinity>());
+    add_edges(t, sigma.head(n), term.head(n));
+  }
+
+  void add_corner(int t, int z, const LocalVector& skew, const LocalVector& sigma, LocalVector& term) {
+    const int point = problem_.mesh.triangles[t][z];
+    term += solution_.rotation[point] * skew;
+    skew_[point] += skew.dot(sigma);
+    skew_terms_[point] += skew.cwiseAbs().dot(sigma.cwiseAbs());
+  }
+
+  void add_edges(int t, LocalVector flux, LocalVector trace) {
+    if (problem_.traces.is_turned(t)) {
+      const Eigen::Index n = flux.size();
+      const LocalMatrix map = problem_.traces.to_xy(t).topLeftCorner(n, n);
+      flux = (map.transpose() * flux).eval();
+      trace = (map.transpose() * trace).eval();
+    }
+    for (int j = 0; j < flux.size(); ++j) {
+      const int dof = problem_.traces.dof(t, j);
+      const bool first = problem_.mesh.edge_triangles[dof / per_edge_][0] == t;
+      flux_[dof] += flux[j];
+      trace_[dof] += first ? trace[j] : -trace[j];
+      largest_flux_ = std::max(largest_flux_, std::abs(flux[j]));
+    }
+  }
+
+  /// A boundary edge has no other side. Where a component of m is free (Γ_F, and tangentially Γ_C and
+  /// rollers) the flux is t, and the trace is not tested, for τ n = 0 there; elsewhere the flux is free and
+  /// the trace is data or the clearance.
+  void compare_with_boundary(const Eigen::VectorXd& clearance) {
+    const TraceSpace& traces = problem_.traces;
+    for (int dof = 0; dof < traces_; ++dof) {
+      if (problem_.mesh.edge_triangles[dof / per_edge_][1] >= 0) continue;
+      if (traces.is_free(dof)) {
+        flux_[dof] -= traces.traction()[traces[dof].unknown];
+        trace_[dof] = 0;
+      } else {
+        flux_[dof] = 0;
+        trace_[dof] -= traces[dof].datum;
+      }
+    }
+    for (const ContactEdge& contact : problem_.clearance.edges)
+      for (int j = 0; j <= problem_.spaces().order; ++j) {
+        const int dof = contact.edge * per_edge_ + j * problem_.spaces().components, row = contact.rows[j];
+        if (problem_.clearance.rows[row].unknown >= 0) trace_[dof] -= traces[dof].sign * clearance[row];
+      }
+  }
+
+  struct Shape {
+    ElementMatrices matrices;
+    LocalMatrix mass_inverse;
+    LocalMatrix stress_mass;
+  };
+
+  const Solution& solution_;
+  const Discretization& problem_;
+  int per_edge_;
+  int traces_;             ///< degrees of freedom of m
+  Eigen::VectorXd flux_;   ///< sum of the outward fluxes of both sides
+  Eigen::VectorXd trace_;  ///< difference of the traces seen from both sides
+  Eigen::VectorXd skew_;   ///< (as σ, φ_z) for each point, and the sum of the sizes of its terms
+  Eigen::VectorXd skew_terms_;
+  PerShape<Shape> shapes_;
+  double interior_ = 0;
+  double imbalance_square_ = 0, load_square_ = 0, stress_square_ = 0;
+  double largest_flux_ = 0, largest_term_ = 0, largest_compliance_ = 0;
+};
+
+}  // namespace
+
+ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure,
+                                   const Eigen::VectorXd& weight, double pressure_scale) {
+  if (clearance.size() == 0) return {};
+  const double weighted = weight.dot(clearance.cwiseAbs());
+  return {relative(std::max(0., -clearance.minCoeff()), clearance.lpNorm<Eigen::Infinity>()),
+          relative(std::max(0., -pressure.minCoeff()), pressure_scale),
+          relative(weight.dot(clearance.cwiseProduct(pressure).cwiseAbs()), weighted * pressure_scale)};
+}
+
+double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
+                       const Eigen::Ref<const Eigen::MatrixXd>& next) {
+  return relative((next - last).lpNorm<1>(), next.lpNorm<1>());
+}
+
+Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
+                    const Eigen::VectorXd& pressure, const Discretization& problem) {
+  const Balance balance(solution, clearance, problem);
+  std::vector<int> tested;
+  Eigen::VectorXd weight(clearance.size());
+  for (int i = 0; i < static_cast<int>(weight.size()); ++i) {
+    weight[i] = problem.clearance.rows[i].weight;
+    if (problem.clearance.rows[i].unknown >= 0) tested.push_back(i);
+  }
+  const double stress_scale = balance.stress_norm() / std::sqrt(problem.mesh.area());
+  const double pressure_scale = std::max(stress_scale, pressure.lpNorm<Eigen::Infinity>());
+  const ContactResiduals contact =
+      contact_residuals(clearance(tested), pressure(tested), weight(tested), pressure_scale);
+  return {balance.equilibrium(), balance.constitutive(),  contact.penetration,
+          contact.tension,       contact.complementarity, balance.symmetry()};
+}
+
+}  // namespace signorini

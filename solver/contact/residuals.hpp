@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+
+#include "fem/discretization.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// How far clearances λ and pressures p are from λ ≥ 0, p ≥ 0, λ p = 0. Relative, without unit.
+struct ContactResiduals {
+  double penetration = 0;      ///< max λ⁻ / max |λ|
+  double tension = 0;          ///< max p⁻ / pressure scale
+  double complementarity = 0;  ///< Σ w |λ p| / (Σ w |λ| · pressure scale)
+
+  double largest() const { return std::max({penetration, tension, complementarity}); }
+};
+
+/// The weights are lengths; the scale is a pressure that is typical of the problem.
+ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure,
+                                   const Eigen::VectorXd& weight, double pressure_scale);
+
+/// Σ |next − last| / Σ |next|, the paper's criterion (section 6.1, iii); 0 if nothing changed.
+double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
+                       const Eigen::Ref<const Eigen::MatrixXd>& next);
+
+/// The residuals of Problem 4.1 for stress, displacement and clearance, whatever method found them:
+///
+/// - equilibrium: the larger of ‖div σ_h + Πf‖ / (‖Πf‖ + ‖σ_h‖ / √|Ω|) and the largest jump of a normal
+///   flux (on Γ_F its distance from t) over the largest flux;
+/// - constitutive: the first equation, tested with the basis of RT_k, over the largest of its terms;
+/// - symmetry: (as σ_h, φ_z) at the worst point z, over the sum of the sizes of its terms;
+/// - the contact residuals, with the pressure scale max(|p|, ‖σ_h‖ / √|Ω|). A node that Γ_C shares with
+///   Γ_D is left out: its clearance is data, and no function of Λ_h tests its pressure.
+///
+/// `clearance` and `pressure` have one entry a row of the clearance space.
+Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
+                    const Eigen::VectorXd& pressure, const Discretization& problem);
+
+}  // namespace signorini

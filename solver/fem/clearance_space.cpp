@@ -1,0 +1,158 @@
+#include "fem/clearance_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+#include "fem/lagrange.hpp"
+
+namespace signorini {
+namespace {
+
+/// What the other parts say of the normal displacement at their points, where a contact part begins or ends.
+struct HeldPoints {
+  std::unordered_map<int, Vector> fixed;         ///< u on Γ_D; for a membrane in the first component
+  std::unordered_multimap<int, Vector> rollers;  ///< normals of the roller edges
+
+  HeldPoints(const Problem& problem, const Mesh& mesh) {
+    for (const BoundaryPart& part : mesh.boundary) {
+      if (const auto* condition = condition_on<Fixed>(problem, part.name)) add_fixed(*condition, part, mesh);
+      if (condition_on<Roller>(problem, part.name)) add_roller(part, mesh);
+    }
+  }
+
+ private:
+  void add_fixed(const Fixed& condition, const BoundaryPart& part, const Mesh& mesh) {
+    for (const int edge : part.edges)
+      for (const int point : mesh.edges[edge]) {
+        const Vector normal = mesh.outward_normal(edge);
+        Vector u(condition.value(0, mesh.points[point], normal), 0);
+        if (condition.value.size() == 2) u.y() = condition.value(1, mesh.points[point], normal);
+        fixed.try_emplace(point, u);
+      }
+  }
+
+  void add_roller(const BoundaryPart& part, const Mesh& mesh) {
+    for (const int edge : part.edges)
+      for (const int point : mesh.edges[edge]) rollers.emplace(point, mesh.outward_normal(edge));
+  }
+};
+
+class Builder {
+ public:
+  Builder(const Problem& problem, const Mesh& mesh)
+      : mesh_(mesh),
+        components_(components(problem.material)),
+        order_(spaces_of(problem.scheme, components_).order),
+        held_(problem, mesh) {
+    for (const auto& [point, u] : held_.fixed) largest_fixed_ = std::max(largest_fixed_, u.norm());
+  }
+
+  void add_part(int part, const Contact& contact) {
+    row_of_node_.clear();
+    for (const int edge : mesh_.boundary[part].edges) add_edge(part, edge, contact);
+  }
+
+  ClearanceSpace take() { return std::move(space_); }
+
+ private:
+  Vector direction_on(int part, const Contact& contact, int edge) const {
+    const Vector normal = mesh_.outward_normal(edge);
+    if (contact.direction.isZero(0)) return normal;
+    const Vector direction = contact.direction.stableNormalized();
+    constexpr double rounding = 1e-9;
+    if (!(direction.dot(normal) > rounding)) {
+      const Point middle = (mesh_.points[mesh_.edges[edge][0]] + mesh_.points[mesh_.edges[edge][1]]) / 2;
+      throw InvalidProblem(
+          {{"/boundary/" + mesh_.boundary[part].name + "/direction",
+            "must point out of the body, from it to the foundation; at " + to_string(middle) +
+                " it does not: turn it, or give the edges on that side another condition"}});
+    }
+    return direction;
+  }
+
+  void add_edge(int part, int edge, const Contact& condition) {
+    const auto [a, b] = mesh_.edges[edge];
+    const Point from = mesh_.points[a], to = mesh_.points[b];
+    const Vector normal = mesh_.outward_normal(edge);
+    const LocalVector projection = project_onto_edge(
+        order_, edge_moments(order_, [&](double s) { return condition.gap(from + s * (to - from), normal); }));
+    ContactEdge contact{edge, {}, {}, direction_on(part, condition, edge)};
+    for (int j = 0; j <= order_; ++j) {
+      contact.rows[j] = order_ == 0 ? new_row({part, (from + to) / 2, projection[0]})
+                                    : row_of_node(part, j == 0 ? a : b, condition.gap, normal, contact.direction);
+      contact.gap[j] = projection[j];
+      space_.rows[contact.rows[j]].weight += mesh_.length(edge) / (order_ + 1);
+    }
+    if (order_ == 0) contact.rows[1] = contact.rows[0];
+    space_.edges.push_back(contact);
+  }
+
+  int new_row(ClearanceRow row) {
+    row.unknown = space_.unknowns++;
+    space_.rows.push_back(row);
+    return static_cast<int>(space_.rows.size()) - 1;
+  }
+
+  int row_of_node(int part, int node, const Field& gap, const Vector& normal, const Vector& direction) {
+    const auto known = row_of_node_.find(node);
+    if (known != row_of_node_.end()) return known->second;
+    const ClearanceRow row{part, mesh_.points[node], gap(mesh_.points[node], normal)};
+    const auto held = held_displacement(node, direction);
+    const int index = held ? held_row(row, *held) : new_row(row);
+    row_of_node_.emplace(node, index);
+    return index;
+  }
+
+  /// u_n at a node that another part holds: on Γ_D, or between rollers that run on in the same direction.
+  std::optional<double> held_displacement(int node, const Vector& direction) const {
+    const auto fixed = held_.fixed.find(node);
+    if (fixed != held_.fixed.end()) return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
+    const auto [begin, end] = held_.rollers.equal_range(node);
+    for (auto roller = begin; roller != end; ++roller)
+      if (roller->second.dot(direction) > 1 - 1e-9) return 0;
+    return std::nullopt;
+  }
+
+  /// λ = g − u_n is known there.
+  int held_row(ClearanceRow row, double normal_displacement) {
+    row.datum = row.gap - normal_displacement;
+    const double rounding = 1e-12 * (std::abs(row.gap) + largest_fixed_);
+    if (row.datum < -rounding)
+      throw InvalidProblem({{"/boundary/" + mesh_.boundary[row.part].name + "/gap",
+                             "the contact can never be met at " + to_string(row.point) +
+                                 ", which a fixed part holds beyond the gap: raise the gap there "
+                                 "or the fixed value"}});
+    row.datum = std::max(0., row.datum);
+    space_.rows.push_back(row);
+    return static_cast<int>(space_.rows.size()) - 1;
+  }
+
+  const Mesh& mesh_;
+  const int components_;
+  const int order_;
+  const HeldPoints held_;
+  double largest_fixed_ = 0;
+  std::unordered_map<int, int> row_of_node_;  ///< of the part that is being added
+  ClearanceSpace space_;
+};
+
+}  // namespace
+
+Eigen::VectorXd ClearanceSpace::clearance(const Eigen::VectorXd& unknown) const {
+  Eigen::VectorXd all(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    all[i] = rows[i].unknown < 0 ? rows[i].datum : unknown[rows[i].unknown];
+  return all;
+}
+
+ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh) {
+  Builder builder(problem, mesh);
+  for (int part = 0; part < static_cast<int>(mesh.boundary.size()); ++part)
+    if (const auto* contact = condition_on<Contact>(problem, mesh.boundary[part].name))
+      builder.add_part(part, *contact);
+  return builder.take();
+}
+
+}  // namespace signorini

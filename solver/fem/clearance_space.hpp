@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fem/scheme.hpp"
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+
+/// One function φ_i of the clearance space: the indicator of a contact edge (P0), or the hat of a node of
+/// a contact part (P1 continuous along the part).
+struct ClearanceRow {
+  int part;           ///< index of the boundary part
+  Point point;        ///< midpoint of the edge, or the node
+  double gap;         ///< mean of g over the edge, or g at the node
+  double weight = 0;  ///< <1, φ_i>, a length
+  int unknown = -1;   ///< number among the contact unknowns; -1 at a node shared with Γ_D
+  double datum = 0;   ///< λ = g − u_D·n at a node shared with Γ_D
+};
+
+/// One edge of Γ_C: its local trace functions j (from its first to its second point) carry
+/// m_n = Πg_j − λ_{row j}.
+struct ContactEdge {
+  int edge;
+  std::array<int, 2> rows;    ///< the same twice for P0
+  std::array<double, 2> gap;  ///< Πg, the L2 projection of g onto P_k on the edge
+  Vector direction;           ///< the unit vector that u_n is taken along: n unless the condition names one
+};
+
+/// Λ_h, the space of the clearance on Γ_C (paper-notes, "The two schemes").
+struct ClearanceSpace {
+  std::vector<ClearanceRow> rows;  ///< part by part, in order along each part
+  std::vector<ContactEdge> edges;
+  int unknowns = 0;
+
+  /// The whole clearance, data included, from the contact unknowns.
+  Eigen::VectorXd clearance(const Eigen::VectorXd& unknown) const;
+};
+
+/// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a node that a contact part shares with a
+/// fixed part is fixed beyond the gap: no displacement meets both.
+ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh);
+
+}  // namespace signorini

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+
+#include "fem/clearance_space.hpp"
+#include "fem/element.hpp"
+#include "fem/trace_space.hpp"
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+
+/// A problem on its mesh: the spaces of its scheme with their data. Refers to both; its members
+/// refer to each other.
+struct Discretization {
+  Discretization(const Problem& problem, const Mesh& mesh);
+  Discretization(const Discretization&) = delete;
+  Discretization& operator=(const Discretization&) = delete;
+
+  int triangles() const { return static_cast<int>(mesh.triangles.size()); }
+  const Spaces& spaces() const { return element.spaces(); }
+
+  const Problem& problem;
+  const Mesh& mesh;
+  Element element;
+  Eigen::MatrixXd load;  ///< F, a column a triangle
+  ClearanceSpace clearance;
+  TraceSpace traces;
+};
+
+/// <−σ_n, φ_i> for every row of the clearance space, the force that the foundation exerts, from the outward
+/// fluxes of the triangles on Γ_C in x and y components.
+Eigen::VectorXd contact_forces(const Discretization& problem,
+                               const std::function<LocalVector(int triangle)>& fluxes);
+
+}  // namespace signorini

@@ -1,0 +1,119 @@
+#include "fem/element.hpp"
+
+#include "fem/lagrange.hpp"
+
+namespace signorini {
+
+Element::Element(const Problem& problem)
+    : problem_(problem),
+      spaces_(spaces_of(problem.scheme, components(problem.material))),
+      constant_material_(is_constant(problem.material)) {
+  if (constant_material_) compliance_ = compliance_at(problem.material, Point::Zero());
+  const int n = spaces_.row.size();
+  for (auto& row : moments_)
+    for (RowMatrix& moment : row) moment = RowMatrix::Zero(n, n);
+  for (LocalVectors& moment : hat_moments_) moment = LocalVectors::Zero(2, n);
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point& x = triangle_rule().points[q];
+    const double weight = triangle_rule().weights[q];
+    tau_[q] = spaces_.row.reference_values(x);
+    v_[q] = triangle_basis(spaces_.order, x);
+    for (int k = 0; k < 2; ++k)
+      for (int l = 0; l < 2; ++l) moments_[k][l] += weight * tau_[q].row(k).transpose() * tau_[q].row(l);
+    const LocalVector hats = triangle_basis(1, x);
+    for (int z = 0; z < 3; ++z) hat_moments_[z] += weight * hats[z] * tau_[q];
+  }
+}
+
+ElementMatrices Element::matrices(const Mesh& mesh, int triangle) const {
+  const AffineMap map(mesh.corners(triangle));
+  return {constant_material_ ? constant_form(map, compliance_) : varying_compliance(map),
+          map.determinant * spaces_.displacement_mass, skew(map)};
+}
+
+// Under the Piola map the rows i, j with functions a, b give (C τ_a, τ_b) = ∫ τ̂_aᵀ Jᵀ C_ij J τ̂_b / det J over
+// the reference triangle, with C_ij the 2×2 block of C for these rows.
+
+LocalMatrix Element::constant_form(const AffineMap& map, const Compliance& compliance) const {
+  const int d = spaces_.components, n = spaces_.row.size();
+  LocalMatrix all(spaces_.stresses(), spaces_.stresses());
+  for (int i = 0; i < d; ++i)
+    for (int j = 0; j < d; ++j) {
+      const Eigen::Matrix2d c =
+          map.jacobian.transpose() * compliance.block<2, 2>(2 * i, 2 * j) * map.jacobian / map.determinant;
+      for (int b = 0; b < n; ++b)
+        for (int a = 0; a < n; ++a)
+          all(a * d + i, b * d + j) = c(0, 0) * moments_[0][0](a, b) + c(0, 1) * moments_[0][1](a, b) +
+                                      c(1, 0) * moments_[1][0](a, b) + c(1, 1) * moments_[1][1](a, b);
+    }
+  return all;
+}
+
+LocalMatrix Element::varying_compliance(const AffineMap& map) const {
+  const int d = spaces_.components, n = spaces_.row.size();
+  LocalMatrix all = LocalMatrix::Zero(spaces_.stresses(), spaces_.stresses());
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Compliance compliance = compliance_at(problem_.material, map(triangle_rule().points[q]));
+    for (int i = 0; i < d; ++i)
+      for (int j = 0; j < d; ++j) {
+        const Eigen::Matrix2d c =
+            map.jacobian.transpose() * compliance.block<2, 2>(2 * i, 2 * j) * map.jacobian / map.determinant;
+        const RowMatrix block = triangle_rule().weights[q] * tau_[q].transpose() * c * tau_[q];
+        for (int b = 0; b < n; ++b)
+          for (int a = 0; a < n; ++a) all(a * d + i, b * d + j) += block(a, b);
+      }
+  }
+  return all;
+}
+
+LocalVector Element::strain(const Mesh& mesh, int triangle, const LocalMatrix& compliance,
+                            const LocalVector& stress) const {
+  const auto* material = std::get_if<YoungPoisson>(&problem_.material);
+  if (!material) return compliance.lazyProduct(stress);
+  const int n = spaces_.row.size();
+  const AffineMap map(mesh.corners(triangle));
+  LocalVector moments = LocalVector::Zero(stress.size());
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    // Row i of a tensor is column i here.
+    const LocalVectors tau = map.jacobian * tau_[q];
+    const Eigen::Matrix2d sigma = tau * stress.reshaped(2, n).transpose() / map.determinant;
+    const Eigen::Vector4d strain = strain_at(*material, map(triangle_rule().points[q]), sigma.reshaped());
+    const LocalVectors moment = strain.reshaped(2, 2).transpose() * tau;
+    moments += triangle_rule().weights[q] * moment.reshaped();
+  }
+  return moments;
+}
+
+LocalMatrix Element::skew(const AffineMap& map) const {
+  LocalMatrix skew(spaces_.rotations(), spaces_.stresses());
+  for (int z = 0; z < spaces_.rotations(); ++z) {
+    for (int a = 0; a < spaces_.row.size(); ++a) {
+      const Vector moment = map.jacobian * hat_moments_[z].col(a);  // ∫ φ_z τ_a over the triangle
+      skew(z, 2 * a) = moment.y();                                  // τ_xy of the first row
+      skew(z, 2 * a + 1) = -moment.x();                             // τ_yx of the second row
+    }
+  }
+  return skew;
+}
+
+LocalMatrix Element::stress_mass(const Mesh& mesh, int triangle) const {
+  const int n = 2 * spaces_.components;
+  return constant_form(AffineMap(mesh.corners(triangle)), Compliance::Identity(n, n));
+}
+
+LocalVector Element::load(const Mesh& mesh, int triangle) const {
+  const AffineMap map(mesh.corners(triangle));
+  const int d = spaces_.components;
+  LocalVector sum = LocalVector::Zero(spaces_.displacements());
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point x = map(triangle_rule().points[q]);
+    const double weight = triangle_rule().weights[q] * map.determinant;
+    for (int c = 0; c < d; ++c) {
+      const double f = problem_.body(c, x);
+      for (int i = 0; i < v_[q].size(); ++i) sum[i * d + c] += weight * f * v_[q][i];
+    }
+  }
+  return sum;
+}
+
+}  // namespace signorini

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+
+#include "fem/quadrature.hpp"
+#include "fem/scheme.hpp"
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+
+/// The forms of Problem 4.1 on one triangle, in the bases of the spaces. Where the material is constant they
+/// depend on the triangle's shape alone.
+struct ElementMatrices {
+  LocalMatrix compliance;         ///< M = (C τ_i, τ_j)
+  LocalMatrix displacement_mass;  ///< V = (v_i, v_j)
+  LocalMatrix skew;               ///< A = (τ_xy − τ_yx, φ_z), a row a corner; no rows for a membrane
+};
+
+/// Computes the matrices and loads of the triangles of a problem: C is the compliance of its material, f its
+/// body load.
+///
+/// Where the material is constant the integrals over the reference triangle are taken once and each triangle
+/// combines them; elsewhere C is evaluated at the seven points of the rule.
+class Element {
+ public:
+  explicit Element(const Problem& problem);
+
+  ElementMatrices matrices(const Mesh& mesh, int triangle) const;
+  LocalVector load(const Mesh& mesh, int triangle) const;         ///< F = (f, v_i)
+  LocalMatrix stress_mass(const Mesh& mesh, int triangle) const;  ///< (τ_i, τ_j)
+  bool has_constant_material() const { return constant_material_; }
+  /// (C σ, τ_j) for a stress in the basis of the spaces: M σ for the compliance M, but with the digits that the entries of M lose
+  /// where the volume is stiff.
+  LocalVector strain(const Mesh& mesh, int triangle, const LocalMatrix& compliance,
+                     const LocalVector& stress) const;
+  const Spaces& spaces() const { return spaces_; }
+
+ private:
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
+  using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, 4>;
+
+  LocalMatrix constant_form(const AffineMap& map, const Compliance& compliance) const;
+  LocalMatrix varying_compliance(const AffineMap& map) const;
+  LocalMatrix skew(const AffineMap& map) const;
+
+  const Problem& problem_;
+  const Spaces& spaces_;
+  bool constant_material_;
+  Compliance compliance_;                             ///< C, if constant
+  std::array<LocalVectors, TriangleRule::size> tau_;  ///< τ̂_a of one row at the points of the rule
+  std::array<LocalVector, TriangleRule::size> v_;     ///< scalar v_i at the points of the rule
+  RowMatrix moments_[2][2];                  ///< ∫ τ̂_k τ̂_lᵀ for the components k, l of a row
+  std::array<LocalVectors, 3> hat_moments_;  ///< ∫ φ_z τ̂_a for the corners z
+};
+
+}  // namespace signorini

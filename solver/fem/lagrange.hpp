@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+
+#include "fem/raviart_thomas.hpp"
+
+namespace signorini {
+
+/// The basis of P_k on an edge at s ∈ [0, 1] from its first to its second end: 1 for k = 0; 1 − s, s for
+/// k = 1.
+LocalVector edge_basis(int order, double s);
+
+/// The basis of P_k on the reference triangle: 1 for k = 0; for k = 1 the functions that are 1 at one
+/// corner and 0 at the others.
+LocalVector triangle_basis(int order, const Point& reference);
+
+/// ∫ function φ_j ds over s ∈ [0, 1], for the functions of edge_basis.
+LocalVector edge_moments(int order, const std::function<double(double s)>& function);
+
+/// The coefficients in edge_basis of the function of P_k that has the given moments: the L2 projection of
+/// whatever has them.
+LocalVector project_onto_edge(int order, const LocalVector& moments);
+
+}  // namespace signorini

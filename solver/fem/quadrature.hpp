@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include "problem/field.hpp"
+
+namespace signorini {
+
+/// Points of the reference triangle (0,0), (1,0), (0,1), all inside it, so that a load that jumps along
+/// mesh lines is never evaluated on its jump. The weights sum to the area 1/2.
+struct TriangleRule {
+  static constexpr int size = 7;
+  std::array<Point, size> points;
+  std::array<double, size> weights;
+};
+
+/// Radon's rule with seven points: exact for polynomials of degree 5 (Stroud, T2: 5-1).
+const TriangleRule& triangle_rule();
+
+/// Points and weights on [0, 1]; the weights sum to 1.
+struct EdgeRule {
+  static constexpr int size = 5;
+  std::array<double, size> points;
+  std::array<double, size> weights;
+};
+
+/// Gauss–Legendre with five points: exact for polynomials of degree 9.
+const EdgeRule& edge_rule();
+
+}  // namespace signorini

@@ -1,0 +1,79 @@
+#include "flux_functional.hpp"
+
+#include "system/hybrid_system.hpp"
+
+namespace signorini {
+namespace {
+
+/// The first of the fluxes of an edge in its triangle.
+int first_flux(const Discretization& problem, int triangle, int edge) {
+  return problem.mesh.local_edge(triangle, edge) * problem.spaces().traces_per_edge();
+}
+
+int triangle_at(const Discretization& problem, int edge) {
+  return problem.mesh.edge_triangles[edge][0];
+}
+
+}  // namespace
+
+double FluxFunctional::operator()(const Discretization& problem, const Eigen::MatrixXd& stress) const {
+  double sum = 0;
+  for (const auto& [edge, weights] : edges) {
+    const int t = triangle_at(problem, edge);
+    sum += weights.dot(stress.col(t).segment(first_flux(problem, t, edge), weights.size()));
+  }
+  return sum;
+}
+
+std::vector<FluxFunctional> reactions_on(const Discretization& problem, const BoundaryPart& part) {
+  const int d = problem.spaces().components, order = problem.spaces().order;
+  std::vector<FluxFunctional> reactions(d == 1 ? 1 : 3);
+  for (const int edge : part.edges) {
+    const int t = triangle_at(problem, edge), e = problem.mesh.local_edge(t, edge);
+    const auto corners = problem.mesh.corners(t);
+    const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
+    LocalVector force[2], moment = LocalVector::Zero(d * (order + 1));
+    for (LocalVector& weights : force) weights = moment;
+    for (int j = 0; j <= order; ++j) {
+      for (int c = 0; c < d; ++c) force[c][j * d + c] = 1;
+      const Point x = order == 0 ? Point((a + b) / 2) : (j == 0 ? a : b);
+      if (d == 2) moment.segment<2>(2 * j) << -x.y(), x.x();
+    }
+    for (int c = 0; c < d; ++c) reactions[c].edges.push_back({edge, force[c]});
+    if (d == 2) reactions[2].edges.push_back({edge, moment});
+  }
+  return reactions;
+}
+
+FluxFunctional contact_force_on(const Discretization& problem, int row) {
+  const int d = problem.spaces().components, per_edge = problem.spaces().traces_per_edge();
+  FluxFunctional force;
+  for (const ContactEdge& contact : problem.clearance.edges) {
+    const int t = triangle_at(problem, contact.edge), first = first_flux(problem, t, contact.edge);
+    LocalVector weights = LocalVector::Zero(per_edge);
+    for (int j = 0; j < per_edge; j += d) {
+      if (contact.rows[problem.traces.dof(t, first + j) % per_edge / d] != row) continue;
+      // −σ_n is σ·n for the membrane.
+      if (d == 1)
+        weights[j] = 1;
+      else
+        weights.segment<2>(j) = -contact.direction;
+    }
+    if (!weights.isZero(0)) force.edges.push_back({contact.edge, weights});
+  }
+  return force;
+}
+
+Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& problem,
+                         const Operator& made, Cholesky::Workspace& workspace) {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.traces.unknowns());
+  for (const auto& [edge, weights] : functional.edges) {
+    const int t = triangle_at(problem, edge);
+    LocalVector coupling = LocalVector::Zero(problem.traces.dofs_per_triangle());
+    coupling.segment(first_flux(problem, t, edge), weights.size()) = weights;
+    add_forces(problem, t, coupling, forces);
+  }
+  return made.factor().condense(forces, workspace).trailing;
+}
+
+}  // namespace signorini

@@ -1,0 +1,110 @@
+#include "mesh/bisect.hpp"
+
+#include <algorithm>
+
+#include "mesh/parts.hpp"
+
+namespace signorini {
+namespace {
+
+using Triangle = std::array<int, 3>;
+
+/// Whether each edge is halved: those of the marked triangles, and with any edge of a triangle the one opposite
+/// its first vertex. Edges are only added, so that this ends for every mesh.
+std::vector<bool> halved_edges(const Mesh& mesh, const std::vector<int>& marked) {
+  std::vector<bool> halved(mesh.edges.size(), false);
+  std::vector<int> added;
+  const auto halve = [&](int edge) {
+    if (halved[edge]) return;
+    halved[edge] = true;
+    added.push_back(edge);
+  };
+  for (const int t : marked) std::ranges::for_each(mesh.triangle_edges[t], halve);
+  while (!added.empty()) {
+    const int edge = added.back();
+    added.pop_back();
+    for (const int t : mesh.edge_triangles[edge])
+      if (t >= 0) halve(mesh.triangle_edges[t][0]);
+  }
+  return halved;
+}
+
+class Bisection {
+ public:
+  Bisection(const Mesh& mesh, const std::vector<int>& marked)
+      : mesh_(mesh), points_(mesh.points), middle_(mesh.edges.size(), -1) {
+    const std::vector<bool> halved = halved_edges(mesh, marked);
+    for (std::size_t edge = 0; edge < halved.size(); ++edge) {
+      if (!halved[edge]) continue;
+      const auto& [a, b] = mesh.edges[edge];
+      middle_[edge] = static_cast<int>(points_.size());
+      points_.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+    }
+  }
+
+  Mesh mesh() {
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) cut(t);
+    return make_mesh(std::move(points_), std::move(triangles_), names(mesh_.boundary), segments());
+  }
+
+ private:
+  void cut(int t) {
+    const auto& [a, b, c] = mesh_.triangles[t];
+    const auto& [bc, ca, ab] = mesh_.triangle_edges[t];
+    const int m = middle_[bc];
+    if (m < 0) return triangles_.push_back(mesh_.triangles[t]);
+    add({m, a, b}, middle_[ab]);
+    add({m, c, a}, middle_[ca]);
+  }
+
+  /// A triangle, or its halves if the edge opposite its first vertex has a middle.
+  void add(const Triangle& triangle, int middle) {
+    const auto& [a, b, c] = triangle;
+    if (middle < 0) return triangles_.push_back(triangle);
+    triangles_.push_back({middle, a, b});
+    triangles_.push_back({middle, c, a});
+  }
+
+  std::vector<BoundarySegment> segments() const {
+    std::vector<BoundarySegment> all;
+    for (int part = 0; part < static_cast<int>(mesh_.boundary.size()); ++part) {
+      const auto directed = directed_edges(mesh_, mesh_.boundary[part]);
+      for (std::size_t i = 0; i < directed.size(); ++i) {
+        const auto& [a, b] = directed[i];
+        const int m = middle_[mesh_.boundary[part].edges[i]];
+        if (m < 0) {
+          all.push_back({{a, b}, part});
+        } else {
+          all.push_back({{a, m}, part});
+          all.push_back({{m, b}, part});
+        }
+      }
+    }
+    return all;
+  }
+
+  const Mesh& mesh_;
+  std::vector<Point> points_;
+  std::vector<int> middle_;  // the number of the middle of each edge, -1 where it stays whole
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+Mesh with_longest_edges_first(Mesh mesh) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    auto& edges = mesh.triangle_edges[t];
+    const auto longest =
+        std::ranges::max_element(edges, {}, [&](int edge) { return std::pair(mesh.length(edge), edge); });
+    const auto turn = longest - edges.begin();
+    std::ranges::rotate(edges, edges.begin() + turn);
+    std::ranges::rotate(mesh.triangles[t], mesh.triangles[t].begin() + turn);
+  }
+  return mesh;
+}
+
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked) {
+  return Bisection(mesh, marked).mesh();
+}
+
+}  // namespace signorini

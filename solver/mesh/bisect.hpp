@@ -1,0 +1,18 @@
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+
+/// The mesh with the vertices of every triangle turned so that its longest edge lies opposite the first one:
+/// what bisect() takes for the edge to be halved. Of edges of the same length that of the largest number is
+/// taken, by both of its triangles.
+Mesh with_longest_edges_first(Mesh mesh);
+
+/// Newest-vertex bisection (Mitchell 1991): halves the edges of the marked triangles, and as many others as it
+/// takes to keep the mesh conforming. A triangle is halved from its first vertex, and each half has the new
+/// point for its first vertex, so that the descendants of a triangle have at most four shapes, however often
+/// they are cut. The points keep their numbers, and the parts their names and the order of their edges.
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked);
+
+}  // namespace signorini

@@ -1,0 +1,133 @@
+#include "mesh/mesh.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace signorini {
+namespace {
+
+/// One side of one triangle, filed under its smaller point.
+struct HalfEdge {
+  int far_point;
+  int triangle;
+  int local;
+};
+
+/// Half-edges sorted into one bucket for each smaller point; a bucket holds about six.
+class HalfEdges {
+ public:
+  explicit HalfEdges(const Mesh& mesh) : begin_(mesh.points.size() + 1, 0) {
+    for_each(mesh, [&](int near, const HalfEdge&) { ++begin_[near + 1]; });
+    for (std::size_t p = 1; p < begin_.size(); ++p) begin_[p] += begin_[p - 1];
+    entries_.resize(3 * mesh.triangles.size());
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for_each(mesh, [&](int near, const HalfEdge& half) { entries_[next[near]++] = half; });
+    for (std::size_t p = 0; p + 1 < begin_.size(); ++p)
+      std::stable_sort(entries_.begin() + begin_[p], entries_.begin() + begin_[p + 1],
+                       [](const HalfEdge& a, const HalfEdge& b) { return a.far_point < b.far_point; });
+  }
+
+  int begin(int near) const { return begin_[near]; }
+  int end(int near) const { return begin_[near + 1]; }
+  const HalfEdge& operator[](int i) const { return entries_[i]; }
+
+ private:
+  template <typename Visit>
+  static void for_each(const Mesh& mesh, Visit visit) {
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+      for (int e = 0; e < 3; ++e) {
+        const auto [a, b] = std::minmax(mesh.triangles[t][(e + 1) % 3], mesh.triangles[t][(e + 2) % 3]);
+        visit(a, HalfEdge{b, t, e});
+      }
+  }
+
+  std::vector<int> begin_;
+  std::vector<HalfEdge> entries_;
+};
+
+void number_edges(Mesh& mesh, const HalfEdges& halves) {
+  mesh.triangle_edges.resize(mesh.triangles.size());
+  for (int near = 0; near < static_cast<int>(mesh.points.size()); ++near)
+    for (int i = halves.begin(near); i < halves.end(near); ++i) {
+      const HalfEdge& half = halves[i];
+      const bool second_side = i > halves.begin(near) && halves[i - 1].far_point == half.far_point;
+      if (second_side) {
+        if (mesh.edge_triangles.back()[1] >= 0) throw std::logic_error("an edge has three triangles");
+        mesh.edge_triangles.back()[1] = half.triangle;
+      } else {
+        mesh.edges.push_back({near, half.far_point});
+        mesh.edge_triangles.push_back({half.triangle, -1});
+      }
+      mesh.triangle_edges[half.triangle][half.local] = static_cast<int>(mesh.edges.size()) - 1;
+    }
+}
+
+int find_edge(const Mesh& mesh, std::array<int, 2> ends) {
+  std::ranges::sort(ends);
+  // Edges are numbered in lexicographic order of their ends.
+  const auto found = std::ranges::lower_bound(mesh.edges, ends);
+  if (found == mesh.edges.end() || *found != ends)
+    throw std::logic_error("a boundary segment is no edge of the mesh");
+  return static_cast<int>(found - mesh.edges.begin());
+}
+
+}  // namespace
+
+double Mesh::length(int edge) const {
+  return (points[edges[edge][1]] - points[edges[edge][0]]).norm();
+}
+
+std::array<Point, 3> Mesh::corners(int triangle) const {
+  const auto& [a, b, c] = triangles[triangle];
+  return {points[a], points[b], points[c]};
+}
+
+int Mesh::local_edge(int triangle, int edge) const {
+  const auto& own = triangle_edges[triangle];
+  return static_cast<int>(std::ranges::find(own, edge) - own.begin());
+}
+
+Vector Mesh::outward_normal(int edge) const {
+  const int t = edge_triangles[edge][0];
+  const int e = local_edge(t, edge);
+  // A triangle that runs counter-clockwise has its outside on the right of each of its edges.
+  const Vector along = points[triangles[t][(e + 2) % 3]] - points[triangles[t][(e + 1) % 3]];
+  return Vector(along.y(), -along.x()).normalized();
+}
+
+Point Mesh::centroid(int triangle) const {
+  const auto& [a, b, c] = triangles[triangle];
+  return (points[a] + points[b] + points[c]) / 3;
+}
+
+double Mesh::area() const {
+  double sum = 0;
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    const auto [a, b, c] = corners(t);
+    const Vector ab = b - a, ac = c - a;
+    sum += 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+  }
+  return sum;
+}
+
+std::size_t Mesh::bytes() const {
+  const auto bytes_of = [](const auto& elements) { return elements.capacity() * sizeof(elements[0]); };
+  std::size_t bytes = bytes_of(points) + bytes_of(triangles) + bytes_of(edges) + bytes_of(triangle_edges) +
+                      bytes_of(edge_triangles);
+  for (const BoundaryPart& part : boundary) bytes += bytes_of(part.edges);
+  return bytes;
+}
+
+Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triangles,
+               const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments) {
+  Mesh mesh;
+  mesh.points = std::move(points);
+  mesh.triangles = std::move(triangles);
+  number_edges(mesh, HalfEdges(mesh));
+  for (const std::string& name : part_names) mesh.boundary.push_back({name, {}});
+  for (const BoundarySegment& segment : segments)
+    mesh.boundary[segment.part].edges.push_back(find_edge(mesh, segment.points));
+  return mesh;
+}
+
+}  // namespace signorini

@@ -1,0 +1,309 @@
+#include "mesh/polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Delaunay_mesh_vertex_base_2.h>
+#include <CGAL/Delaunay_mesher_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include "mesh/chains.hpp"
+#include "mesh/rings.hpp"
+#include "mesh/segments.hpp"
+
+namespace signorini {
+namespace {
+
+/// The number of a vertex in the mesh, once it has one.
+struct Number {
+  int value = -1;
+};
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using NumberedVertex = CGAL::Triangulation_vertex_base_with_info_2<Number, Kernel>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel, CGAL::Triangulation_data_structure_2<CGAL::Delaunay_mesh_vertex_base_2<Kernel, NumberedVertex>,
+                                                 CGAL::Delaunay_mesh_face_base_2<Kernel>>>;
+using Face = Triangulation::Face_handle;
+using Vertex = Triangulation::Vertex_handle;
+
+Point point_of(Vertex vertex) {
+  return {vertex->point().x(), vertex->point().y()};
+}
+
+std::array<Point, 3> corners_of(Face face) {
+  return {point_of(face->vertex(0)), point_of(face->vertex(1)), point_of(face->vertex(2))};
+}
+
+/// The longest edge that a triangle may have, by its place. All lengths in the unit frame.
+class SizeField {
+ public:
+  SizeField(double size, const std::vector<LocalSize>& sizes, const UnitFrame& frame)
+      : size_(relaxed(frame.into(size))) {
+    for (const LocalSize& local : sizes)
+      locals_.push_back(
+          {frame.into(local.at), relaxed(frame.into(local.radius)), relaxed(frame.into(local.size))});
+    std::ranges::stable_sort(locals_, {}, &LocalSize::size);
+  }
+
+  /// The bound for a triangle whose longest edge is given; any bound above that is as good as the smallest.
+  double bound(const std::array<Point, 3>& corners, double longest) const {
+    for (const LocalSize& local : locals_) {
+      if (local.size >= longest) break;
+      if (distance(local.at, corners) <= local.radius) return local.size;
+    }
+    return size_;
+  }
+
+ private:
+  /// An edge that is as long as asked but for rounding is not cut in two.
+  static double relaxed(double length) { return length * (1 + 1e-9); }
+
+  double size_;
+  std::vector<LocalSize> locals_;  // the smallest first
+};
+
+/// CGAL's criteria for triangles to be refined, with a size that depends on the place.
+class Criteria {
+ public:
+  explicit Criteria(const SizeField& sizes) : sizes_(&sizes) {}
+
+  struct Quality {
+    double excess = 0;        ///< squared longest edge by the squared bound on it
+    double sine_squared = 1;  ///< of the smallest angle
+
+    /// Which of two bad triangles is refined first: the one farthest above its size, then the sharpest.
+    bool operator<(const Quality& other) const {
+      if (excess > 1 || other.excess > 1) return excess > other.excess;
+      return sine_squared < other.sine_squared;
+    }
+  };
+
+  class Is_bad {
+   public:
+    explicit Is_bad(const SizeField& sizes) : sizes_(&sizes) {}
+
+    CGAL::Mesh_2::Face_badness operator()(const Quality& quality) const {
+      if (quality.excess > 1) return CGAL::Mesh_2::IMPERATIVELY_BAD;
+      // B = 1/8 (20.7°), for which the refinement is proved to end.
+      return quality.sine_squared < 0.125 ? CGAL::Mesh_2::BAD : CGAL::Mesh_2::NOT_BAD;
+    }
+
+    CGAL::Mesh_2::Face_badness operator()(Face face, Quality& quality) const {
+      quality = quality_of(corners_of(face));
+      return (*this)(quality);
+    }
+
+   private:
+    Quality quality_of(const std::array<Point, 3>& corners) const {
+      const auto& [a, b, c] = corners;
+      std::array<double, 3> squares{(c - b).squaredNorm(), (a - c).squaredNorm(), (b - a).squaredNorm()};
+      std::ranges::sort(squares);
+      const double bound = sizes_->bound(corners, std::sqrt(squares[2]));
+      const double twice = twice_area(a, b, c);
+      return {squares[2] / (bound * bound), twice * twice / (squares[1] * squares[2])};
+    }
+
+    const SizeField* sizes_;
+  };
+
+  Is_bad is_bad_object() const { return Is_bad(*sizes_); }
+
+ private:
+  const SizeField* sizes_;
+};
+
+using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
+
+/// The vertices, numbered as the points of the rings, with the edges of the rings as constraints.
+std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& unit) {
+  std::vector<Vertex> vertices;
+  Face near;
+  for (const Point& x : unit.points) {
+    const Vertex vertex = triangulation.insert({x.x(), x.y()}, near);
+    vertex->info().value = static_cast<int>(vertices.size());
+    near = vertex->face();
+    vertices.push_back(vertex);
+  }
+  for (int p = 0; p < static_cast<int>(vertices.size()); ++p)
+    triangulation.insert_constraint(vertices[p], vertices[unit.next(p)]);
+  return vertices;
+}
+
+/// The triangle inside a ring on the edge from its first point.
+Face face_inside(const Triangulation& triangulation, const std::vector<Vertex>& vertices, const Rings& unit,
+                 int ring) {
+  const Vertex from = vertices[unit.begin[ring]], to = vertices[unit.begin[ring] + 1];
+  Face face;
+  int opposite = 0;
+  triangulation.is_edge(from, to, face, opposite);
+  const bool on_the_left = face->vertex(Triangulation::ccw(opposite)) == from;
+  const bool inside_is_left = unit.signed_area(ring) > 0;
+  return on_the_left == inside_is_left ? face : face->neighbor(opposite);
+}
+
+void mark_domain(Triangulation& triangulation, const std::vector<Vertex>& vertices, const Rings& unit) {
+  Mesher::mark_convex_hull(triangulation);
+  for (int hole = 1; hole < unit.size(); ++hole)
+    Mesher::propagate_marks(face_inside(triangulation, vertices, unit, hole), false);
+}
+
+[[noreturn]] void refuse_size(int max_triangles) {
+  throw InvalidProblem({{"/mesh/size", "the mesh would have more than " + std::to_string(max_triangles) +
+                                           " triangles, which the sizes or narrow places of the domain "
+                                           "ask for; give larger sizes, or widen the narrow places"}});
+}
+
+void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles) {
+  Mesher mesher(triangulation, Criteria(sizes));
+  mesher.init(true);
+  // By Euler's formula there are fewer triangles than twice the vertices, and hardly fewer in a fine mesh.
+  const auto most_vertices = static_cast<std::size_t>(max_triangles / 2);
+  while (mesher.try_one_step_refine_mesh())
+    if (triangulation.number_of_vertices() > most_vertices) refuse_size(max_triangles);
+}
+
+std::string hole_name(std::size_t hole) {
+  return "hole" + std::to_string(hole);
+}
+
+std::string side_name(const Polygon& polygon, std::size_t edge) {
+  return polygon.sides.empty() ? "side" + std::to_string(edge) : polygon.sides[edge];
+}
+
+/// Reads the mesh out of the triangulation of the domain's rings.
+class Extraction {
+ public:
+  Extraction(const Polygon& polygon, const Rings& rings, const UnitFrame& frame,
+             const Triangulation& triangulation)
+      : polygon_(polygon), rings_(rings), frame_(frame) {
+    points_ = rings.points;
+    for (const Face face : triangulation.finite_face_handles())
+      if (face->is_in_domain()) take(face);
+    follow_rings();
+  }
+
+  Mesh mesh() && {
+    const std::vector<std::string> names = part_names(polygon_);
+    const auto edges = edges_of_parts(names);
+    std::vector<BoundarySegment> segments;
+    for (int part = 0; part < static_cast<int>(names.size()); ++part)
+      for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part});
+    return make_mesh(std::move(points_), std::move(triangles_), names, segments);
+  }
+
+ private:
+  void take(Face face) {
+    std::array<int, 3> triangle{};
+    for (int i = 0; i < 3; ++i) triangle[i] = number(face->vertex(i));
+    triangles_.push_back(triangle);
+    // A triangle has the domain on the left of its edges.
+    next_.resize(points_.size(), -1);
+    for (int i = 0; i < 3; ++i)
+      if (face->is_constrained(i)) next_[triangle[(i + 1) % 3]] = triangle[(i + 2) % 3];
+  }
+
+  int number(Vertex vertex) {
+    int& value = vertex->info().value;
+    if (value < 0) {
+      value = static_cast<int>(points_.size());
+      points_.push_back(frame_.out_of(point_of(vertex)));
+    }
+    return value;
+  }
+
+  bool is_given(int point) const { return point < static_cast<int>(rings_.points.size()); }
+
+  /// Sorts the edges of the boundary by the edge of the polygon on which they lie.
+  void follow_rings() {
+    pieces_.resize(rings_.points.size());
+    for (int ring = 0; ring < rings_.size(); ++ring) {
+      int corner = rings_.begin[ring];
+      do corner = follow_edge(corner);
+      while (corner != rings_.begin[ring]);
+    }
+  }
+
+  /// From one vertex of the polygon to the next one, in the direction that has the domain on the left.
+  int follow_edge(int corner) {
+    std::vector<int> along{corner};
+    do along.push_back(next_[along.back()]);
+    while (!is_given(along.back()));
+    const int end = along.back();
+    for (std::size_t i = 1; i + 1 < along.size(); ++i) put_on_edge(along[i], corner, end);
+    auto& pieces = pieces_[rings_.next(corner) == end ? corner : end];
+    for (std::size_t i = 1; i < along.size(); ++i) pieces.push_back({along[i - 1], along[i]});
+    return end;
+  }
+
+  /// The frame rounds: the point goes to its share of the way between the vertices as they were given.
+  void put_on_edge(int point, int from, int to) {
+    const Vector whole = points_[to] - points_[from], part = points_[point] - points_[from];
+    points_[point] = points_[from] + (part.dot(whole) / whole.squaredNorm()) * whole;
+  }
+
+  std::vector<std::vector<std::array<int, 2>>> edges_of_parts(const std::vector<std::string>& names) const {
+    std::map<std::string, std::size_t> parts;
+    for (std::size_t i = 0; i < names.size(); ++i) parts[names[i]] = i;
+    std::vector<std::vector<std::array<int, 2>>> edges(names.size());
+    for (int edge = 0; edge < static_cast<int>(pieces_.size()); ++edge) {
+      auto& of_part = edges[parts.at(part_of(edge))];
+      of_part.insert(of_part.end(), pieces_[edge].begin(), pieces_[edge].end());
+    }
+    return edges;
+  }
+
+  std::string part_of(int edge) const {
+    return rings_.ring[edge] > 0 ? hole_name(rings_.ring[edge] - 1) : side_name(polygon_, edge);
+  }
+
+  const Polygon& polygon_;
+  const Rings& rings_;
+  const UnitFrame& frame_;
+  std::vector<Point> points_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> next_;                                // along the boundary, of each point on it
+  std::vector<std::vector<std::array<int, 2>>> pieces_;  // of each edge of the polygon
+};
+
+void throw_if_any(std::vector<Fault> faults) {
+  if (!faults.empty()) throw InvalidProblem(std::move(faults));
+}
+
+}  // namespace
+
+std::vector<std::string> part_names(const Polygon& polygon) {
+  std::vector<std::string> names;
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
+    const std::string name = side_name(polygon, i);
+    if (known.insert(name).second) names.push_back(name);
+  }
+  for (std::size_t i = 0; i < polygon.holes.size(); ++i) names.push_back(hole_name(i));
+  return names;
+}
+
+double area(const Polygon& polygon) {
+  return domain_area(Rings(polygon));
+}
+
+Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes,
+                  int max_triangles) {
+  throw_if_any(validate(polygon));
+  throw_if_any(validate(polygon, size, sizes, max_triangles));
+  const Rings rings(polygon);
+  const UnitFrame frame(rings.points);
+  const Rings unit = rings.within(frame);
+
+  Triangulation triangulation;
+  mark_domain(triangulation, insert_rings(triangulation, unit), unit);
+  refine(triangulation, SizeField(size, sizes, frame), max_triangles);
+  return Extraction(polygon, rings, frame, triangulation).mesh();
+}
+
+}  // namespace signorini

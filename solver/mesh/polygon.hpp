@@ -1,0 +1,33 @@
+#pragma once
+
+#include "mesh/mesh.hpp"
+#include "problem/domain.hpp"
+
+namespace signorini {
+
+/// Every fault of the polygon, with its pointer: `/domain/vertices/3`, `/domain/holes/0/2`, `/domain/sides`.
+/// Points, and points and edges, closer than 1e-9 of the domain's extent count as touching.
+std::vector<Fault> validate(const Polygon& polygon);
+
+/// Every fault of the sizes that a mesh of the polygon (which has no fault) is asked for, at `/mesh/size` and
+/// `/mesh/sizes`: not positive, or so small that the mesh would surely have more triangles than allowed.
+std::vector<Fault> validate(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes,
+                            int max_triangles = 20'000'000);
+
+/// The names of the parts in the order in which the mesh has them.
+std::vector<std::string> part_names(const Polygon& polygon);
+
+/// The area of the polygon without its holes.
+double area(const Polygon& polygon);
+
+/// A Delaunay mesh whose edges are no longer than `size` (but for rounding) nor than the local sizes, and
+/// whose angles are above 20.7° but where the polygon's own angles are smaller.
+///
+/// The vertices of the polygon are the first points of the mesh, bit for bit: the outer ring, then the holes.
+/// The edges of a part run with the domain on their left. Equal input gives equal meshes. Throws
+/// InvalidProblem for the faults that validate names, and at `/mesh/size` if the mesh would have more
+/// triangles than allowed.
+Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes = {},
+                  int max_triangles = 20'000'000);
+
+}  // namespace signorini

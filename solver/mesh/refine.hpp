@@ -1,0 +1,12 @@
+#pragma once
+
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+
+/// Cuts every triangle into four similar ones by the midpoints of its edges, so many times over. The points
+/// keep their numbers, and the parts their names and the order of their edges. Throws InvalidProblem at
+/// `/mesh/refine` if there would be more triangles than allowed.
+Mesh refine(const Mesh& mesh, int times, int max_triangles = 20'000'000);
+
+}  // namespace signorini

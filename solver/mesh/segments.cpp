@@ -1,0 +1,46 @@
+#include "mesh/segments.hpp"
+
+#include <algorithm>
+
+namespace signorini {
+
+double twice_area(const Point& a, const Point& b, const Point& c) {
+  const Vector ab = b - a, ac = c - a;
+  return ab.x() * ac.y() - ab.y() * ac.x();
+}
+
+double distance(const Point& x, const Segment& segment) {
+  const Vector along = segment[1] - segment[0];
+  const double length_squared = along.squaredNorm();
+  if (length_squared == 0) return (x - segment[0]).norm();
+  const double at = std::clamp((x - segment[0]).dot(along) / length_squared, 0.0, 1.0);
+  return (x - segment[0] - at * along).norm();
+}
+
+double distance(const Point& x, const std::array<Point, 3>& triangle) {
+  const auto& [a, b, c] = triangle;
+  const double at_a = twice_area(x, b, c), at_b = twice_area(x, c, a), at_c = twice_area(x, a, b);
+  if ((at_a >= 0 && at_b >= 0 && at_c >= 0) || (at_a <= 0 && at_b <= 0 && at_c <= 0)) return 0;
+  return std::min({distance(x, Segment{a, b}), distance(x, Segment{b, c}), distance(x, Segment{c, a})});
+}
+
+bool cross(const Segment& a, const Segment& b) {
+  const auto on_both_sides = [](const Segment& ends, const Segment& line) {
+    return (twice_area(line[0], line[1], ends[0]) > 0) != (twice_area(line[0], line[1], ends[1]) > 0);
+  };
+  return on_both_sides(a, b) && on_both_sides(b, a);
+}
+
+int winding_number(const Point& x, const std::vector<Segment>& curves) {
+  int turns = 0;
+  // Counts the crossings with the ray from x to the right; an end at the height of x counts as above it.
+  for (const auto& [from, to] : curves) {
+    const bool rises = from.y() < x.y() && to.y() >= x.y();
+    const bool falls = to.y() < x.y() && from.y() >= x.y();
+    if (rises && twice_area(from, to, x) > 0) ++turns;
+    if (falls && twice_area(from, to, x) < 0) --turns;
+  }
+  return turns;
+}
+
+}  // namespace signorini

@@ -1,0 +1,42 @@
+#include "problem/field.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace signorini {
+namespace {
+
+std::string shortest(double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  return {digits, end};
+}
+
+std::string join(const std::vector<Fault>& faults) {
+  std::string text;
+  for (const Fault& fault : faults) {
+    if (!text.empty()) text += "; ";
+    text += fault.where + ": " + fault.detail;
+  }
+  return text;
+}
+
+}  // namespace
+
+InvalidProblem::InvalidProblem(std::vector<Fault> faults)
+    : std::runtime_error(join(faults)), faults_(std::move(faults)) {}
+
+Field::Field(double constant, std::string name) : constant_(constant), name_(std::move(name)) {}
+
+Field::Field(Function function, std::string name) : function_(std::move(function)), name_(std::move(name)) {}
+
+double Field::checked(double value, const Point& x) const {
+  if (std::isfinite(value)) return value;
+  throw InvalidProblem({{name_, "is not finite at " + to_string(x) + ": " + shortest(value)}});
+}
+
+std::string to_string(const Point& x) {
+  return "(" + shortest(x.x()) + ", " + shortest(x.y()) + ")";
+}
+
+}  // namespace signorini

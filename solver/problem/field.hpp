@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace signorini {
+
+using Point = Eigen::Vector2d;
+using Vector = Eigen::Vector2d;
+
+/// One thing that is wrong with a problem: where it stands (the path of the member, written as a JSON
+/// pointer, e.g. `/boundary/top/gap`) and what is wrong and what would be right, in words.
+struct Fault {
+  std::string where;
+  std::string detail;
+};
+
+/// A problem that cannot be solved as posed. Carries every fault that was found.
+class InvalidProblem : public std::runtime_error {
+ public:
+  explicit InvalidProblem(std::vector<Fault> faults);
+
+  const std::vector<Fault>& faults() const { return faults_; }
+
+ private:
+  std::vector<Fault> faults_;
+};
+
+/// A scalar that may vary in space, and on a boundary with the outward unit normal: a coefficient, a
+/// load or boundary data, in the units of the problem.
+///
+/// A field knows its name (the path of the member that it came from), so that a value that is not finite
+/// is refused with the name and the place. Evaluating a field is not re-entrant if its function is not.
+class Field {
+ public:
+  using Function = std::function<double(const Point& x, const Vector& normal)>;
+
+  Field(double constant = 0, std::string name = {});
+  Field(Function function, std::string name);
+
+  /// The value at x; inside the domain there is no normal. Throws InvalidProblem if it is not finite.
+  double operator()(const Point& x, const Vector& normal = Vector::Zero()) const {
+    return function_ ? checked(function_(x, normal), x) : constant_;
+  }
+
+  bool is_constant() const { return !function_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  double checked(double value, const Point& x) const;
+
+  double constant_ = 0;
+  Function function_;
+  std::string name_;
+};
+
+/// A displacement, load or traction: one component for a membrane, two (x, y) for an elastic body. Without
+/// components it is zero.
+class VectorField {
+ public:
+  VectorField() = default;
+  VectorField(Field scalar) : components_{std::move(scalar)} {}
+  VectorField(double scalar) : VectorField(Field(scalar)) {}
+  VectorField(Field x, Field y) : components_{std::move(x), std::move(y)} {}
+
+  double operator()(int component, const Point& x, const Vector& normal = Vector::Zero()) const {
+    return components_.empty() ? 0 : components_[component](x, normal);
+  }
+
+  int size() const { return static_cast<int>(components_.size()); }
+
+ private:
+  std::vector<Field> components_;
+};
+
+/// `(x, y)` with the fewest digits that tell the point from its neighbours.
+std::string to_string(const Point& x);
+
+}  // namespace signorini

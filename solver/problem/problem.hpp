@@ -1,0 +1,95 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "problem/domain.hpp"
+#include "problem/field.hpp"
+#include "problem/material.hpp"
+
+namespace signorini {
+
+/// u = value.
+struct Fixed {
+  VectorField value;
+};
+
+/// u_n = 0 and no tangential stress; elasticity only.
+struct Roller {};
+
+/// σ n = value. A part without a condition is free: traction 0.
+struct Traction {
+  VectorField value;
+};
+
+/// σ n = −value n: a pressure on an elastic body.
+struct Pressure {
+  Field value;
+};
+
+/// u_n ≤ gap, σ_n ≤ 0, (u_n − gap) σ_n = 0, σ_T = 0. For an elastic body u_n = u·n and σ_n = n·σn; for the
+/// membrane u_n = −u and σ_n = −σ·n (paper-notes, "One convention"). A negative gap is an initial overlap.
+///
+/// A direction d of any length, for an elastic body only, takes the place of the normal: u_d = u·d/|d|, and
+/// the reaction acts along −d. For a foundation with a normal of its own, such as a plane, −d is that normal.
+/// It must point out of the body on every edge of the part.
+struct Contact {
+  Field gap;
+  Vector direction = Vector::Zero();  ///< zero stands for the normal
+};
+
+using Condition = std::variant<Fixed, Roller, Traction, Pressure, Contact>;
+
+/// The pairs of spaces of section 4 of the paper: `conforming` RT1–P1–P1 continuous, `nonconforming`
+/// RT0–P0–P0 (stress rows, displacement, clearance). For elasticity a P1 continuous rotation imposes the
+/// symmetry of the stress weakly, and the nonconforming rows take the curl of the cubic bubble in (PEERS).
+enum class Scheme { conforming, nonconforming };
+
+/// The unilateral contact problem, (2.3) of the paper for an elastic body and (6.1) with general data for a
+/// membrane: −div σ = body in the domain, the material's law, a condition on every part of the boundary.
+struct Problem {
+  Domain domain;
+  MeshRequest mesh;
+  Material material = MembraneStiffness{};
+  VectorField body;
+  std::map<std::string, Condition> boundary;
+  Scheme scheme = Scheme::nonconforming;
+
+  /// A text that two problems have in common only if their meshes, materials, kinds of conditions and schemes
+  /// are the same, whatever their gaps, loads and boundary values: who has read the fields can tell, the
+  /// solver cannot. Empty: not known, so that nothing is kept or reused for this problem.
+  std::string operator_key;
+  /// In the same way for the loads, tractions and boundary values: two problems that have both keys in common
+  /// differ in their gaps at most.
+  std::string load_key;
+};
+
+/// The data of a problem anew, its operator as it was.
+struct Variation {
+  std::string title;
+  VectorField body;
+  std::map<std::string, Condition> boundary;  ///< of the same kinds as the problem's
+  std::string load_key;
+};
+
+/// Gives the problem the data of the variation.
+void apply(const Variation& variation, Problem& problem);
+
+/// The condition of the given kind on the part, or null if the part has another one or none.
+template <typename Kind>
+const Kind* condition_on(const Problem& problem, const std::string& part) {
+  const auto found = problem.boundary.find(part);
+  return found == problem.boundary.end() ? nullptr : std::get_if<Kind>(&found->second);
+}
+
+/// Every fault of the problem that can be seen without solving it: sizes, names of parts, a condition
+/// that holds the body, and every field evaluated on a coarse mesh of the domain. Empty if there is none.
+std::vector<Fault> validate(const Problem& problem);
+
+/// The same for the data of each variation of a sound problem; the faults of variation i have names under
+/// `/sweep/i`.
+std::vector<Fault> validate(const Problem& problem, const std::vector<Variation>& sweep);
+
+}  // namespace signorini

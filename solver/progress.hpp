@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "observer.hpp"
+
+namespace signorini {
+
+/// The running record of one solve: phases and their seconds, iterations and levels, and the two things that
+/// may end it early, the observer and the clock.
+class Progress {
+ public:
+  /// `spent` are seconds that count for the time limit, but were before the start.
+  Progress(Observer& observer, std::optional<double> time_limit, double spent = 0)
+      : observer_(observer), time_limit_(time_limit), spent_before_(spent) {}
+
+  /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up and there is no answer yet.
+  void enter(Phase phase);
+
+  /// There is an iterate to be kept: until the next phase but certify, only the observer ends the solve.
+  void found() { found_ = true; }
+
+  /// Throws like enter().
+  void check();
+
+  /// To be called for every triangle of a long loop; asks every few thousand. Throws like enter().
+  void check_in(int triangle) {
+    if (triangle % 4096 == 0) check();
+  }
+
+  /// Numbers and dates the record of an iteration, keeps it and shows it to the observer. Returns false
+  /// when the time is up, so that the iterate can be kept; throws Cancelled.
+  bool record(Iteration iteration);
+
+  /// Dates the record of a level and shows it with its solution to the observer.
+  Level refined(Level level, const Solution& solution);
+
+  /// Iterations since the history was last taken; their numbers run on.
+  int iterations() const { return static_cast<int>(history_.size()); }
+  std::vector<Iteration> take_history() {
+    taken_ += iterations();
+    return std::exchange(history_, {});
+  }
+
+  /// Seconds since the start, and those spent in a phase so far.
+  double seconds() const;
+  double seconds_in(Phase phase) const;
+
+ private:
+  bool in_time() const { return !time_limit_ || spent_before_ + seconds() < *time_limit_; }
+
+  Observer& observer_;
+  std::optional<double> time_limit_;
+  double spent_before_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Phase phase_ = Phase::mesh;
+  bool found_ = false;
+  double entered_ = 0;
+  std::array<double, 5> spent_{};
+  std::vector<Iteration> history_;
+  int taken_ = 0;
+};
+
+}  // namespace signorini

@@ -1,0 +1,136 @@
+#include "solve.hpp"
+
+#include "adapt.hpp"
+#include "condensed_problem.hpp"
+#include "contact/paper_uzawa.hpp"
+#include "contact/rigid_motions.hpp"
+#include "stable_mesh.hpp"
+#include "sweep.hpp"
+
+namespace signorini {
+namespace {
+
+Solution iterate(const Discretization& problem, const PaperUzawa& method, const Settings& settings,
+                 Progress& progress) {
+  held_by_contact_alone(problem);
+  progress.enter(Phase::assemble);
+  UzawaIteration iteration(problem, method, progress);
+  progress.enter(Phase::iterate);
+  const Outcome outcome = iteration.run(progress);
+  progress.found();
+  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
+                outcome};
+  return summarize(problem, std::move(fields), settings, progress);
+}
+
+Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
+  return on_stable_mesh(problem, requested_mesh(problem, progress), [&](const std::shared_ptr<const Mesh>& mesh) {
+    return iterate(Discretization(problem, *mesh), std::get<PaperUzawa>(settings.method), settings, progress);
+  });
+}
+
+/// Shows the observer of a whole job no phases and iterations, but lets it end the entry at hand.
+class WithinSweep : public Observer {
+ public:
+  explicit WithinSweep(Observer& whole) : whole_(whole) {}
+  bool keep_going() override { return whole_.keep_going(); }
+
+ private:
+  Observer& whole_;
+};
+
+/// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
+template <typename SolveOne>
+void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, Observer& observer,
+                const Progress& whole, Solution& solution, const SolveOne& solve_one) {
+  WithinSweep within(observer);
+  for (const Variation& variation : sweep) {
+    Progress progress(within, settings.time_limit, whole.seconds());
+    SweepEntry entry;
+    try {
+      entry = solve_one(variation, progress);
+    } catch (const SolveError& failure) {
+      entry.error = failure.what();
+    }
+    entry.title = variation.title;
+    entry.seconds = progress.seconds();
+    solution.sweep.push_back(std::move(entry));
+    observer.swept(solution.sweep.size(), sweep.size());
+  }
+}
+
+Solution solve_condensed(const Problem& problem, const std::vector<Variation>& sweep,
+                         const Settings& settings, Observer& observer, OperatorCache* cache,
+                         Progress& progress) {
+  if (problem.operator_key.empty()) cache = nullptr;
+  auto used = cache ? cache->find(problem.operator_key) : nullptr;
+  const bool keeps = cache && !used;
+  Solution solution;
+  {
+    CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
+                                      : CondensedProblem(problem, requested_mesh(problem, progress), progress);
+    used = condensed.used_operator();
+    if (keeps) cache->keep(problem.operator_key, used);
+    solution = condensed.solve(settings, progress);
+  }
+  if (sweep.empty()) return solution;
+  Sweep entries(problem, std::move(used), settings);
+  sweep_over(sweep, settings, observer, progress, solution,
+             [&](const Variation& variation, Progress& own) { return entries.solve(variation, own); });
+  return solution;
+}
+
+Solution solve_by_method(const Problem& problem, const std::vector<Variation>& sweep,
+                         const Settings& settings, Observer& observer, OperatorCache* cache,
+                         Progress& progress) {
+  if (problem.mesh.adaptive) return adapt(problem, settings, progress);
+  if (!std::holds_alternative<PaperUzawa>(settings.method))
+    return solve_condensed(problem, sweep, settings, observer, cache, progress);
+  Solution solution = solve_paper_form(problem, settings, progress);
+  Problem varied = problem;
+  sweep_over(sweep, settings, observer, progress, solution, [&](const Variation& variation, Progress& own) {
+    apply(variation, varied);
+    return entry_of(solve_paper_form(varied, settings, own));
+  });
+  return solution;
+}
+
+Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
+               Observer& observer, OperatorCache* cache) {
+  if (auto faults = validate(problem, settings); !faults.empty()) throw InvalidProblem(std::move(faults));
+  if (auto faults = validate(problem, sweep); !faults.empty()) throw InvalidProblem(std::move(faults));
+  Progress progress(observer, settings.time_limit);
+  try {
+    return solve_by_method(problem, sweep, settings, observer, cache, progress);
+  } catch (const NotPositiveDefinite& failure) {
+    throw SolveError(
+        std::string(failure.what()) +
+        ": the stiffness varies too strongly over the mesh, its triangles are too thin, or it is too "
+        "coarse for the pair of spaces to be stable; check the material and its units, the sizes of "
+        "the domain, or refine");
+  } catch (const OutOfMemory& failure) {
+    throw SolveError(std::string(failure.what()) + ": use a coarser mesh or a machine with more memory");
+  }
+}
+
+}  // namespace
+
+Solution solve(const Problem& problem, const Settings& settings, Observer& observer, OperatorCache& cache) {
+  return solve(problem, {}, settings, observer, &cache);
+}
+
+Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
+               Observer& observer, OperatorCache& cache) {
+  return solve(problem, sweep, settings, observer, &cache);
+}
+
+Solution solve(const Problem& problem, const Settings& settings, Observer& observer) {
+  return solve(problem, {}, settings, observer, nullptr);
+}
+
+Solution solve(const Problem& problem, const Settings& settings) {
+  Observer indifferent;
+  return solve(problem, settings, indifferent);
+}
+
+}  // namespace signorini

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <limits>
+
+#include "contact/operator.hpp"
+#include "observer.hpp"
+#include "problem/problem.hpp"
+#include "problem/settings.hpp"
+#include "problem/study.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// What a solve will take, told without solving.
+struct Estimate {
+  std::int64_t triangles = 0;
+  Unknowns unknowns;
+  std::int64_t system = 0;  ///< unknowns of the SPD system that is factored
+  double memory_bytes = 0;  ///< from a fit to measured solves
+  double seconds = 0;       ///< from a fit to measured solves
+};
+
+/// Why a mesh cannot refine itself in the paper's iteration.
+inline constexpr const char* paper_form_needs_one_mesh =
+    "the paper's iteration has a step that suits one mesh only: leave solver.rho and solver.augmentation out, "
+    "or use active_set";
+
+/// Sizes of the problem, exactly; memory and time, roughly. For a mesh that refines itself all of it is for the
+/// largest mesh that it may become, and the sizes are rough too.
+Estimate estimate(const Problem& problem);
+
+/// The same for every run of a study, in the order in which they are solved. A mesh may take long to make: it
+/// ends behind the run with which they have more stress unknowns together than `enough`.
+std::vector<Estimate> estimate(const Problem& problem, const Study& study,
+                               std::int64_t enough = std::numeric_limits<std::int64_t>::max());
+
+/// Every fault of the problem, and where the method cannot do what it asks for.
+std::vector<Fault> validate(const Problem& problem, const Settings& settings);
+
+/// Solves Problem 4.1 of the paper for the problem.
+///
+/// Re-entrant; starts no thread. An iteration that does not converge is no error: the solution says so
+/// (`summary.outcome`) and holds the last finite iterate. Throws InvalidProblem (faults of the data,
+/// those included that only the real mesh shows), SolveError, and Cancelled if the observer ends it.
+///
+/// A sweep adds an entry for each variation of the problem's data, solved by the same operator; one that has
+/// no solution says why and does not end the others. Cancelled and the time limit are for the whole.
+///
+/// With a cache, an operator that is kept there under `problem.operator_key` is used again, which spares the
+/// mesh, the assembly and the factorisation; else the one that is made is kept there. The paper's form has
+/// another matrix and does without.
+Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
+               Observer& observer, OperatorCache& cache);
+Solution solve(const Problem& problem, const Settings& settings, Observer& observer, OperatorCache& cache);
+Solution solve(const Problem& problem, const Settings& settings, Observer& observer);
+Solution solve(const Problem& problem, const Settings& settings = {});
+
+}  // namespace signorini

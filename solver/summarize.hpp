@@ -1,0 +1,42 @@
+#pragma once
+
+#include "fem/discretization.hpp"
+#include "problem/settings.hpp"
+#include "progress.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// The discrete fields that a method found.
+struct Fields {
+  Eigen::MatrixXd stress;        ///< a column a triangle
+  Eigen::MatrixXd displacement;  ///< a column a triangle
+  Eigen::VectorXd clearance;     ///< the contact unknowns
+  Eigen::VectorXd coupling;      ///< traces, rotations and clearances, as TraceSpace numbers them
+  Outcome outcome = Outcome::converged;
+};
+
+Timings timings(const Progress& progress);
+
+/// <−σ_n, φ_i> / <1, φ_i> from the forces <−σ_n, φ_i> for every row of the clearance space. A node that a
+/// fixed part holds clear of the foundation has none: what acts there is the support's.
+Eigen::VectorXd contact_pressure(const ClearanceSpace& space, const Eigen::VectorXd& forces);
+
+/// Clearance and pressure, an entry a row of the clearance space, by parts.
+std::vector<ContactPart> contact_parts(const ClearanceSpace& space, const Mesh& mesh,
+                                       const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure);
+
+ContactSummary sum_up(const std::vector<ContactPart>& parts);
+
+/// From the values of the part's reactions_on().
+Reaction make_reaction(std::string part, const std::vector<double>& values);
+
+/// Why the method ended like this and what to try; empty if it converged.
+std::string advice(const Settings& settings, Outcome outcome, int iterations);
+
+/// Everything that a solution tells beyond the fields, computed from the fields alone: contact pressures,
+/// residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
+Solution summarize(const Discretization& problem, Fields fields, const Settings& settings,
+                   Progress& progress);
+
+}  // namespace signorini

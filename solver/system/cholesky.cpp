@@ -1,0 +1,289 @@
+#include "system/cholesky.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <new>
+
+#include <cblas.h>
+
+extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+
+namespace signorini {
+namespace {
+
+/// Columns that are eliminated at a time, between two looks at the observer.
+constexpr int kBlock = 256;
+/// Fronts up to this size are factored without BLAS.
+constexpr int kSmall = 24;
+
+std::unique_ptr<double[]> allocate(std::size_t size) {
+  try {
+    return std::unique_ptr<double[]>(new double[size]);
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory();
+  }
+}
+
+/// Square matrices that are taken and released last in, first out.
+class Stack {
+ public:
+  explicit Stack(std::size_t capacity) : values_(allocate(capacity)) {}
+
+  double* push(std::size_t size) {
+    double* top = values_.get() + used_;
+    used_ += size;
+    return top;
+  }
+  void pop(std::size_t size) { used_ -= size; }
+  double* top() { return values_.get() + used_; }
+
+ private:
+  std::unique_ptr<double[]> values_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace
+
+NotPositiveDefinite::NotPositiveDefinite() : std::runtime_error("the matrix is not positive definite") {}
+OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisation") {}
+
+/// The numerical part. What a piece leaves is a square matrix of its front's rest, kept until the piece
+/// around it has taken it in. A piece's own is made while those of its halves still stand, so pieces of odd
+/// and of even depth use two stacks, and each is last in, first out.
+class Cholesky::Factorisation {
+ public:
+  Factorisation(Cholesky& own, const ElementSum& matrix, Progress& progress)
+      : own_(own), matrix_(matrix), progress_(progress), position_(matrix.size), stacks_(make_stacks()), diagonal_(matrix.size) {
+    own_.order_.for_each_piece([this](int piece) { eliminate(piece); });
+  }
+
+  /// What the whole leaves, in the order of the trailing unknowns.
+  Eigen::MatrixXd complement() {
+    constexpr int whole = 1;
+    const Dissection::Front front = own_.order_.front(whole);
+    const int n = front.rest();
+    stack(whole).pop(rest_size(front));
+    const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
+    return lower.selfadjointView<Eigen::Lower>();
+  }
+
+ private:
+  static std::size_t rest_size(const Dissection::Front& front) {
+    return static_cast<std::size_t>(front.rest()) * front.rest();
+  }
+  static int depth_parity(int piece) { return std::bit_width(static_cast<unsigned>(piece)) % 2; }
+  Stack& stack(int piece) { return stacks_[depth_parity(piece)]; }
+
+  std::array<Stack, 2> make_stacks() const {
+    std::array<std::size_t, 2> used{}, most{};
+    own_.order_.for_each_piece([&](int piece) {
+      const int own = depth_parity(piece);
+      used[own] += rest_size(own_.order_.front(piece));
+      most[own] = std::max(most[own], used[own]);
+      if (own_.order_.is_leaf(piece)) return;
+      for (const int half : {2 * piece, 2 * piece + 1}) used[1 - own] -= rest_size(own_.order_.front(half));
+    });
+    return {Stack(most[0]), Stack(most[1])};
+  }
+
+  void eliminate(int piece) {
+    progress_.check();
+    const Dissection::Front front = own_.order_.front(piece);
+    const Target target{own_.panel(piece), stack(piece).push(rest_size(front)), front.size(), front.pivots};
+    std::fill_n(target.columns, static_cast<std::size_t>(front.size()) * front.pivots, 0.);
+    std::fill_n(target.rest, rest_size(front), 0.);
+    for (int k = 0; k < front.size(); ++k) position_[front.unknowns[k]] = k;
+    if (own_.order_.is_leaf(piece)) {
+      for (const int element : own_.order_.elements(piece)) add_element(element, target);
+    } else {
+      // The second half lies on top of the stack.
+      add_half(2 * piece + 1, target);
+      add_half(2 * piece, target);
+    }
+    factor(target);
+    check_pivots(front, target);
+  }
+
+  /// A front while it is assembled and factored; of its symmetric matrix the lower triangle is kept, the
+  /// columns of the pivots apart from the square of the rest.
+  struct Target {
+    double* columns;
+    double* rest;
+    int size, pivots;
+
+    /// A column, to be indexed with rows from the diagonal on.
+    double* operator[](int j) const {
+      const std::ptrdiff_t left = size - pivots;
+      return j < pivots ? columns + static_cast<std::ptrdiff_t>(j) * size
+                        : rest + (j - pivots) * left - pivots;
+    }
+  };
+
+  void add_element(int element, const Target& target) {
+    const auto unknowns = matrix_.unknowns_of(element);
+    const double* values = matrix_.matrix(element);
+    const int n = matrix_.per_element;
+    for (int j = 0; j < n; ++j) {
+      if (unknowns[j] < 0) continue;
+      const int column = position_[unknowns[j]];
+      for (int i = 0; i < n; ++i)
+        if (unknowns[i] == unknowns[j]) diagonal_[unknowns[j]] += values[j * n + i];
+      for (int i = 0; i < n; ++i) {
+        // Two rows of an element may be one unknown; then both orders of the pair fall on the diagonal.
+        if (unknowns[i] >= 0 && position_[unknowns[i]] >= column)
+          target[column][position_[unknowns[i]]] += values[j * n + i];
+      }
+    }
+  }
+
+  void add_half(int half, const Target& target) {
+    const Dissection::Front front = own_.order_.front(half);
+    const std::span<const int> unknowns = front.remaining();
+    const int n = front.rest();
+    stack(half).pop(rest_size(front));
+    const double* values = stack(half).top();
+    places_.resize(n);
+    for (int k = 0; k < n; ++k) places_[k] = position_[unknowns[k]];
+    for (int j = 0; j < n; ++j) {
+      double* column = target[places_[j]];
+      const double* own = values + static_cast<std::ptrdiff_t>(j) * n;
+      for (int i = j; i < n; ++i) column[places_[i]] += own[i];
+    }
+  }
+
+  void factor(const Target& front) {
+    const int m = front.size, p = front.pivots, rest = m - p;
+    if (m <= kSmall) return factor_small(front);
+    for (int begin = 0; begin < p; begin += kBlock) {
+      progress_.check();
+      const int width = std::min(kBlock, p - begin), end = begin + width;
+      double* diagonal = front[begin] + begin;
+      int info = 0;
+      dpotrf_("L", &width, diagonal, &m, &info);
+      if (info != 0) throw NotPositiveDefinite();
+      double* below = front[begin] + end;
+      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, m - end, width, 1,
+                  diagonal, m, below, m);
+      if (end < p) {
+        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, p - end, width, -1, below, m, 1,
+                    front[end] + end, m);
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rest, p - end, width, -1, front[begin] + p, m,
+                    below, m, 1, front[end] + p, m);
+      }
+      cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, rest, width, -1, front[begin] + p, m, 1,
+                  front.rest, std::max(1, rest));
+    }
+  }
+
+  /// The same column by column: a call of BLAS takes longer than a small front.
+  void factor_small(const Target& front) {
+    for (int k = 0; k < front.pivots; ++k) {
+      double* column = front[k];
+      if (!(column[k] > 0)) throw NotPositiveDefinite();
+      const double pivot = std::sqrt(column[k]);
+      column[k] = pivot;
+      for (int i = k + 1; i < front.size; ++i) column[i] /= pivot;
+      for (int j = k + 1; j < front.size; ++j) {
+        double* other = front[j];
+        const double factor = column[j];
+        for (int i = j; i < front.size; ++i) other[i] -= factor * column[i];
+      }
+    }
+  }
+
+  /// A pivot of which the elimination leaves less than double precision holds is rounding, not stiffness. It is
+  /// compared with its own diagonal entry, so that the units of the unknowns do not matter.
+  void check_pivots(const Dissection::Front& front, const Target& target) const {
+    constexpr double rounding = 1e-13;
+    for (int k = 0; k < front.pivots; ++k) {
+      const double pivot = target[k][k];
+      if (!(pivot * pivot >= rounding * diagonal_[front.unknowns[k]])) throw NotPositiveDefinite();
+    }
+  }
+
+  Cholesky& own_;
+  const ElementSum& matrix_;
+  Progress& progress_;
+  std::vector<int> position_;  ///< in the present front, of each of its unknowns
+  std::vector<int> places_;
+  std::array<Stack, 2> stacks_;
+  std::vector<double> diagonal_;  ///< of the matrix, as far as it is assembled
+};
+
+Cholesky::Cholesky(const ElementSum& matrix, int trailing, Progress& progress)
+    : trailing_(trailing), order_(matrix, trailing, progress), panel_begin_(order_.pieces()) {
+  int pivots = 0;
+  order_.for_each_piece([&](int piece) {
+    const Dissection::Front front = order_.front(piece);
+    panel_begin_[piece] = count_;
+    count_ += static_cast<std::size_t>(front.size()) * front.pivots;
+    pivots += front.pivots;
+    largest_front_ = std::max(largest_front_, front.size());
+  });
+  const bool rows_of_zeros = pivots != matrix.size - trailing || order_.front(1).rest() != trailing;
+  if (rows_of_zeros) throw NotPositiveDefinite();
+  values_ = allocate(count_);
+  Factorisation factorisation(*this, matrix, progress);
+  complement_ = factorisation.complement();
+}
+
+void Cholesky::forward(Eigen::VectorXd& x, Workspace& workspace) const {
+  workspace.front.resize(largest_front_);
+  double* local = workspace.front.data();
+  order_.for_each_piece([&](int piece) {
+    const Dissection::Front front = order_.front(piece);
+    const int m = front.size(), p = front.pivots;
+    if (p == 0) return;
+    for (int k = 0; k < p; ++k) local[k] = x[front.unknowns[k]];
+    const double* columns = panel(piece);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, local, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m - p, p, 1, columns + p, m, local, 1, 0, local + p, 1);
+    for (int k = 0; k < p; ++k) x[front.unknowns[k]] = local[k];
+    for (int k = p; k < m; ++k) x[front.unknowns[k]] -= local[k];
+  });
+}
+
+void Cholesky::backward(Eigen::VectorXd& x, Workspace& workspace) const {
+  workspace.front.resize(largest_front_);
+  double* local = workspace.front.data();
+  order_.for_each_piece_outside_in([&](int piece) {
+    const Dissection::Front front = order_.front(piece);
+    const int m = front.size(), p = front.pivots;
+    if (p == 0) return;
+    for (int k = 0; k < m; ++k) local[k] = x[front.unknowns[k]];
+    const double* columns = panel(piece);
+    cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, local + p, 1, 1, local, 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, p, columns, m, local, 1);
+    for (int k = 0; k < p; ++k) x[front.unknowns[k]] = local[k];
+  });
+}
+
+Cholesky::Condensed Cholesky::condense(const Eigen::VectorXd& b, Workspace& workspace) const {
+  Condensed condensed{b, {}};
+  forward(condensed.forward, workspace);
+  condensed.trailing = condensed.forward.tail(trailing_);
+  return condensed;
+}
+
+Eigen::VectorXd Cholesky::expand(const Condensed& b, const Eigen::VectorXd& trailing,
+                                 Workspace& workspace) const {
+  Eigen::VectorXd x = b.forward;
+  x.tail(trailing_) = trailing;
+  backward(x, workspace);
+  return x;
+}
+
+void Cholesky::solve(Eigen::VectorXd& x, Workspace& workspace) const {
+  forward(x, workspace);
+  backward(x, workspace);
+}
+
+std::size_t Cholesky::bytes() const {
+  const std::size_t numbers = count_ + static_cast<std::size_t>(complement_.size());
+  return sizeof(Cholesky) + numbers * sizeof(double) + panel_begin_.size() * sizeof(std::size_t) +
+         order_.bytes();
+}
+
+}  // namespace signorini

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "problem/field.hpp"
+
+namespace signorini {
+
+/// A sparse symmetric matrix as the sum of small dense ones, one an element. Elements of the same shape
+/// share theirs.
+struct ElementSum {
+  int size = 0;         ///< unknowns of the whole matrix
+  int per_element = 0;  ///< rows of a small matrix
+
+  std::vector<int> unknowns;     ///< of each row of each element in turn; -1 leaves the row out
+  std::vector<int> matrix_of;    ///< the number of each element's matrix
+  std::vector<double> matrices;  ///< per_element² numbers each
+  std::vector<Point> centres;    ///< where the elements lie
+
+  int elements() const { return static_cast<int>(matrix_of.size()); }
+  std::span<const int> unknowns_of(int element) const {
+    return std::span(unknowns).subspan(static_cast<std::size_t>(element) * per_element, per_element);
+  }
+  const double* matrix(int element) const {
+    return matrices.data() + static_cast<std::size_t>(matrix_of[element]) * per_element * per_element;
+  }
+};
+
+}  // namespace signorini

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+
+#include <Eigen/Cholesky>
+
+#include "fem/element.hpp"
+
+namespace signorini {
+
+/// Stress and displacement of one triangle, and the forces G σ with which it acts on its coupling.
+struct LocalFields {
+  LocalVector stress;
+  LocalVector displacement;
+  LocalVector force;
+};
+
+/// Eliminates stress σ and displacement u of one triangle from its part of Problem 4.1 in hybrid form,
+///
+///     M σ + Bᵀ u = Gᵀ c,    B σ = −F,
+///
+/// for the coupling coefficients c = (m, γ): traces m in x and y components, and rotations γ. G = [E; −A],
+/// where E selects the fluxes, which come first (their functionals are the moments against the trace basis,
+/// so <τ_j n, m> = m_j), and A = (as τ, φ). With W = B M⁻¹ Bᵀ
+///
+///     G σ = K c − q,    K = G (M⁻¹ − M⁻¹ Bᵀ W⁻¹ B M⁻¹) Gᵀ,    q = Q F,    Q = G M⁻¹ Bᵀ W⁻¹.
+class Elimination {
+ public:
+  Elimination(const ElementMatrices& element, const Spaces& spaces);
+
+  LocalMatrix stiffness() const;      ///< K
+  LocalMatrix coupling_load() const;  ///< Q
+  /// The fields for given coupling and load F; `strain` answers M σ with as many digits as it can.
+  LocalFields recover(const LocalVector& coupling, const LocalVector& load,
+                      const std::function<LocalVector(const LocalVector& stress)>& strain) const;
+  /// What the fields change by if the coupling does.
+  LocalFields respond(const LocalVector& coupling_change) const;
+  LocalVector force(const LocalVector& stress) const { return coupling_ * stress; }  ///< G σ
+  const LocalMatrix& compliance() const { return compliance_matrix_; }               ///< M
+
+ private:
+  LocalFields solve(const LocalVector& a, const LocalVector& b) const;
+
+  const Spaces& spaces_;
+  LocalMatrix coupling_;                  ///< G
+  LocalMatrix compliance_matrix_;         ///< M
+  Eigen::LLT<LocalMatrix> compliance_;    ///< M
+  LocalMatrix lifted_;                    ///< M⁻¹ Bᵀ
+  Eigen::LLT<LocalMatrix> displacement_;  ///< W
+};
+
+/// The same with the displacement as data and the augmented compliance M_r = M + r Bᵀ V⁻¹ B (the form of
+/// the paper's Uzawa iteration):
+///
+///     M_r σ = Gᵀ c − Bᵀ (u + r V⁻¹ F).
+///
+/// With w = u + r V⁻¹ F this gives G σ = K_r c − P w, and B σ = Pᵀ c − D w.
+class AugmentedElimination {
+ public:
+  AugmentedElimination(const ElementMatrices& element, const Spaces& spaces, double augmentation);
+
+  LocalMatrix stiffness() const;   ///< K_r = G M_r⁻¹ Gᵀ
+  LocalMatrix coupling() const;    ///< P = G M_r⁻¹ Bᵀ
+  LocalMatrix divergence() const;  ///< D = B M_r⁻¹ Bᵀ
+  LocalVector stress(const LocalVector& coupling, const LocalVector& w) const;
+
+ private:
+  const LocalMatrix& b_;
+  LocalMatrix coupling_;                ///< G
+  Eigen::LLT<LocalMatrix> compliance_;  ///< M_r
+  LocalMatrix lifted_;                  ///< M_r⁻¹ Bᵀ
+};
+
+}  // namespace signorini

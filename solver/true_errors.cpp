@@ -1,0 +1,113 @@
+#include "true_errors.hpp"
+
+#include <cmath>
+
+#include "certify/local_fields.hpp"
+#include "fem/lagrange.hpp"
+
+namespace signorini {
+namespace {
+
+/// Squares of norms.
+struct Squares {
+  double displacement = 0, stress = 0, energy_norm = 0;
+};
+
+template <int D>
+Tensor<D> stress_at(const std::vector<Field>& fields, const Point& x) {
+  if constexpr (D == 1) {
+    return {fields[0](x), fields[1](x)};
+  } else {
+    const double shear = fields[2](x);
+    return {fields[0](x), shear, shear, fields[1](x)};
+  }
+}
+
+/// u_h at a point of the reference triangle.
+template <int D, typename Coefficients>
+Eigen::Matrix<double, D, 1> displacement_at(const LocalVector& basis, const Coefficients& coefficients) {
+  Eigen::Matrix<double, D, 1> value = Eigen::Matrix<double, D, 1>::Zero();
+  for (int a = 0; a < basis.size(); ++a) value += basis[a] * coefficients.template segment<D>(a * D);
+  return value;
+}
+
+template <int D>
+class Differences {
+ public:
+  Differences(const Problem& problem, const Exact& exact, const Solution& solution)
+      : exact_(exact),
+        solution_(solution),
+        law_(problem.material),
+        stress_(spaces_of(solution.scheme, D), points_of(rule_)) {
+    const int order = spaces_of(solution.scheme, D).order;
+    for (const WeightedPoint& at : rule_) bases_.push_back(triangle_basis(order, at.point));
+  }
+
+  void add(int t, Squares& squares) {
+    const AffineMap map(solution_.mesh.corners(t));
+    for (int q = 0; q < static_cast<int>(rule_.size()); ++q) {
+      const Point x = map(rule_[q].point);
+      const double weight = rule_[q].weight * map.determinant;
+      if (exact_.displacement) squares.displacement += weight * displacement(t, q, x).squaredNorm();
+      if (exact_.stress.empty()) continue;
+      const Tensor<D> difference = stress_at<D>(exact_.stress, x) - stress_(q, map, solution_.stress.col(t));
+      squares.stress += weight * difference.squaredNorm();
+      squares.energy_norm += weight * difference.dot(law_(x).compliance * difference);
+    }
+  }
+
+ private:
+  static std::vector<Point> points_of(const std::vector<WeightedPoint>& rule) {
+    std::vector<Point> points;
+    for (const WeightedPoint& at : rule) points.push_back(at.point);
+    return points;
+  }
+
+  Eigen::Matrix<double, D, 1> displacement(int t, int q, const Point& x) const {
+    Eigen::Matrix<double, D, 1> difference = -displacement_at<D>(bases_[q], solution_.displacement.col(t));
+    for (int c = 0; c < D; ++c) difference[c] += (*exact_.displacement)(c, x);
+    return difference;
+  }
+
+  const Exact& exact_;
+  const Solution& solution_;
+  LawField<D> law_;
+  const std::vector<WeightedPoint> rule_ = composite_rule(2);
+  StressValues<D> stress_;
+  std::vector<LocalVector> bases_;
+};
+
+template <int D>
+Squares integrate(const Problem& problem, const Exact& exact, const Solution& solution, Observer& observer) {
+  Squares squares;
+  if (!exact.displacement && exact.stress.empty()) return squares;
+  Differences<D> differences(problem, exact, solution);
+  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
+    if (t % 4096 == 0 && !observer.keep_going()) throw Cancelled();
+    differences.add(t, squares);
+  }
+  return squares;
+}
+
+}  // namespace
+
+TrueErrors true_errors(const Problem& problem, const Exact& exact, const Solution& solution,
+                       Observer& observer) {
+  const Squares squares = solution.components == 1 ? integrate<1>(problem, exact, solution, observer)
+                                                   : integrate<2>(problem, exact, solution, observer);
+  TrueErrors errors;
+  if (exact.displacement) errors.displacement = std::sqrt(squares.displacement);
+  if (!exact.stress.empty()) {
+    errors.stress = std::sqrt(squares.stress);
+    errors.energy_norm = std::sqrt(squares.energy_norm);
+  }
+  const Summary& summary = solution.summary;
+  if (exact.energy) errors.energy = std::abs(summary.energy - *exact.energy);
+  if (exact.energy && errors.energy_norm && summary.error_bound) {
+    const double of_displacement = 2 * std::max(0., summary.error_bound->energy_upper - *exact.energy);
+    errors.total = std::sqrt(squares.energy_norm + of_displacement);
+  }
+  return errors;
+}
+
+}  // namespace signorini

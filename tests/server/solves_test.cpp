@@ -1,0 +1,270 @@
+#include "running_service.hpp"
+
+#include <thread>
+
+#include "raw_client.hpp"
+
+namespace signorini::server {
+namespace {
+
+using nlohmann::json;
+
+class Solves : public ServiceTest {};
+
+TEST_F(Solves, AreAcceptedWithAStatusDocument) {
+  const auto reply = post("slow");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 202);
+  const json document = json::parse(reply->body);
+  const std::string id = document.at("id");
+  EXPECT_EQ(reply->get_header_value("Location"), "/v1/solves/" + id);
+  for (const char* member : {"id", "status", "title", "created_at", "started_at", "finished_at", "progress",
+                             "summary", "error", "links"}) {
+    EXPECT_TRUE(document.contains(member)) << member;
+  }
+  EXPECT_EQ(document.at("title"), "slow");
+  EXPECT_EQ(document.at("links").at("result"), "/v1/solves/" + id + "/result");
+}
+
+TEST_F(Solves, ShowProgressAndHistoryWhileRunning) {
+  const std::string id = submit("slow");
+  json progress{{"iteration", 0}};
+  for (int i = 0; i < 200 && progress.at("iteration") < 3; ++i) {
+    progress = status_of(id).at("progress");
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(progress.at("phase"), "iterate");
+  EXPECT_GE(progress.at("iteration"), 3);
+  const json history = json::parse(get("/v1/solves/" + id + "/history")->body);
+  EXPECT_EQ(history.at("status"), "running");
+  EXPECT_GE(history.at("history").at("iteration").size(), 3u);
+  expect_problem(get("/v1/solves/" + id + "/result"), 409);
+}
+
+TEST_F(Solves, AnswerAWaitWithTheResult) {
+  const auto reply = post("short", "?wait=5&fields=summary");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  const json result = json::parse(reply->body);
+  EXPECT_EQ(result.at("status"), "succeeded");
+  EXPECT_EQ(result.at("summary").at("outcome"), "converged");
+  EXPECT_FALSE(result.contains("mesh"));
+  EXPECT_FALSE(result.contains("history"));
+}
+
+TEST_F(Solves, AnswerAWaitThatIsTooShortWithTheStatus) {
+  const auto reply = post("slow", "?wait=0.1");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 202);
+  EXPECT_EQ(json::parse(reply->body).at("status"), "running");
+}
+
+TEST_F(Solves, HonourThePreferHeader) {
+  const auto reply = client_.Post("/v1/solves", {{"Prefer", "respond-async, wait=5"}},
+                                  problem_titled("short"), "application/json");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_EQ(reply->get_header_value("Preference-Applied"), "wait=5");
+}
+
+TEST_F(Solves, ServeTheLastIterateOfAMethodThatDiverged) {
+  const auto reply = post("diverges", "?wait=5");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+  const json result = json::parse(reply->body);
+  EXPECT_EQ(result.at("status"), "failed");
+  EXPECT_EQ(result.at("summary").at("outcome"), "diverged");
+  EXPECT_EQ(result.at("history").at("iteration").size(), 3u);
+  const json status = status_of(result.at("id"));
+  EXPECT_EQ(status.at("error").at("detail"), "take a smaller rho");
+  EXPECT_EQ(get("/v1/solves/" + std::string(result.at("id")) + "/result")->status, 200);
+}
+
+TEST_F(Solves, ThatFailSayWhy) {
+  const json no_solution = json::parse(post("no solution", "?wait=5")->body);
+  EXPECT_EQ(no_solution.at("status"), "failed");
+  EXPECT_EQ(no_solution.at("error").at("detail"), "nothing holds the body");
+
+  const json not_finite = json::parse(post("not finite", "?wait=5")->body);
+  EXPECT_EQ(not_finite.at("error").at("errors").at(0).at("pointer"), "/load/body");
+
+  const json no_memory = json::parse(post("no memory", "?wait=5")->body);
+  EXPECT_EQ(no_memory.at("error").at("title"), "Out of memory");
+  expect_problem(get("/v1/solves/" + std::string(no_memory.at("id")) + "/result"), 410);
+}
+
+TEST_F(Solves, NeverLeakAnException) {
+  const auto reply = post("throws", "?wait=5");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(json::parse(reply->body).at("status"), "failed");
+  EXPECT_EQ(reply->body.find("secret"), std::string::npos);
+  for (const auto& [name, value] : reply->headers) {
+    EXPECT_NE(name, "EXCEPTION_WHAT");
+    EXPECT_EQ(value.find("secret"), std::string::npos);
+  }
+}
+
+TEST_F(Solves, AreCancelledWhileRunning) {
+  const std::string id = submit("slow");
+  wait_for(id, "running");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto reply = client_.Delete("/v1/solves/" + id);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 202);
+  const json document = wait_for(id, "cancelled");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_TRUE(document.at("finished_at").is_string());
+  EXPECT_EQ(json::parse(get("/v1/solves/" + id + "/history")->body).at("status"), "cancelled");
+}
+
+TEST_F(Solves, ThatRefineShowTheirLevelAndKeepItWhenCancelled) {
+  const std::string id = submit("refines");
+  json progress;
+  for (int i = 0; i < 500 && !progress.contains("level"); ++i) {
+    progress = status_of(id).at("progress");
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_TRUE(progress.contains("level"));
+  const json level = progress.at("level");
+  EXPECT_EQ(level.at("triangles"), 100 * level.at("number").get<int>());
+  EXPECT_EQ(level.at("relative"), 0.25);
+  client_.Delete("/v1/solves/" + id);
+  const json document = wait_for(id, "cancelled");
+  EXPECT_EQ(document.at("summary").at("outcome"), "cancelled");
+  EXPECT_EQ(document.at("error").at("detail"), "the relative error bound is 0.25 and 0.1 was asked for");
+  const auto result = get("/v1/solves/" + id + "/result?fields=summary");
+  EXPECT_EQ(result->status, 200);
+  EXPECT_EQ(json::parse(result->body).at("status"), "cancelled");
+}
+
+TEST_F(Solves, AreCancelledWhileQueued) {
+  submit("slow");
+  submit("slow");
+  const std::string id = submit("instant");
+  const auto reply = client_.Delete("/v1/solves/" + id);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 202);
+  EXPECT_EQ(json::parse(reply->body).at("status"), "cancelled");
+  expect_problem(get("/v1/solves/" + id + "/result"), 410);
+}
+
+/// A client that posts `slow`, waits for it and leaves.
+void post_and_leave(int port, const std::string& query) {
+  const std::string body = problem_titled("slow");
+  RawClient client(port);
+  client.send("POST /v1/solves" + query +
+              " HTTP/1.1\r\nHost: h\r\nContent-Type: application/json\r\nContent-Length: " +
+              std::to_string(body.size()) + "\r\n\r\n" + body);
+  httplib::Client watcher("127.0.0.1", port);
+  for (int i = 0; i < 1000; ++i) {
+    if (!json::parse(watcher.Get("/v1/solves?status=running")->body).at("solves").empty()) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+TEST_F(Solves, AreCancelledWithTheirClientIfItSaidSo) {
+  post_and_leave(service_.port(), "?wait=60&cancel=disconnect");
+  const json solve = json::parse(get("/v1/solves")->body).at("solves").at(0);
+  wait_for(solve.at("id"), "cancelled");
+}
+
+TEST_F(Solves, OutliveTheirClientOtherwise) {
+  post_and_leave(service_.port(), "?wait=60");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(json::parse(get("/v1/solves")->body).at("solves").at(0).at("status"), "running");
+  service_.stop();
+}
+
+TEST_F(Solves, AreNotCancelledWhileTheirClientWaits) {
+  const auto reply = post("short", "?wait=20&cancel=disconnect&fields=summary");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+  EXPECT_EQ(json::parse(reply->body).at("status"), "succeeded");
+}
+
+TEST_F(Solves, AreRemovedOnceEnded) {
+  const std::string id = json::parse(post("instant", "?wait=5")->body).at("id");
+  const auto reply = client_.Delete("/v1/solves/" + id);
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 204);
+  expect_problem(get("/v1/solves/" + id), 404);
+  expect_problem(client_.Delete("/v1/solves/" + id), 404);
+}
+
+TEST_F(Solves, AreRefusedWhenTheQueueIsFull) {
+  for (int i = 0; i < 6; ++i) {
+    wait_for(submit("slow"), i < 2 ? "running" : "queued");
+  }
+  const auto reply = post("instant");
+  expect_problem(reply, 503);
+  EXPECT_FALSE(reply->get_header_value("Retry-After").empty());
+}
+
+TEST_F(Solves, AreRefusedWhileStopping) {
+  service_.scheduler().stop();
+  const auto reply = post("instant");
+  expect_problem(reply, 503);
+  EXPECT_FALSE(reply->get_header_value("Retry-After").empty());
+  expect_problem(get("/readyz"), 503);
+  EXPECT_EQ(get("/healthz")->status, 200);
+}
+
+TEST_F(Solves, AreListedNewestFirstInPages) {
+  std::vector<std::string> ids;
+  for (int i = 0; i < 5; ++i) ids.push_back(json::parse(post("instant", "?wait=5")->body).at("id"));
+  std::vector<std::string> listed;
+  for (json next = "/v1/solves?limit=2&status=succeeded"; next.is_string();) {
+    const json page = json::parse(get(next)->body);
+    EXPECT_LE(page.at("solves").size(), 2u);
+    for (const json& solve : page.at("solves")) listed.push_back(solve.at("id"));
+    next = page.at("links").at("next");
+  }
+  EXPECT_EQ(listed, (std::vector<std::string>(ids.rbegin(), ids.rend())));
+  EXPECT_TRUE(json::parse(get("/v1/solves?status=failed")->body).at("solves").empty());
+}
+
+TEST_F(Solves, RefuseBadQueryValuesAndUnknownParameters) {
+  for (const char* query :
+       {"status=done", "limit=0", "limit=1001", "limit=ten", "after=x", "offset=1", "limit=1&limit=2"}) {
+    const json problem = expect_problem(get(std::string("/v1/solves?") + query), 400);
+    EXPECT_TRUE(problem.at("errors").at(0).contains("parameter")) << query;
+  }
+  for (const char* query : {"?wait=-1", "?wait=3601", "?wait=soon", "?fields=nonsense", "?sync=1",
+                            "?cancel=disconnect", "?wait=1&cancel=yes"}) {
+    expect_problem(post("instant", query), 400);
+  }
+  EXPECT_TRUE(json::parse(get("/v1/solves")->body).at("solves").empty());
+}
+
+TEST_F(Solves, AreValidatedWithoutASolve) {
+  const auto reply = client_.Post("/v1/validate", problem_titled("slow"), "application/json");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200) << reply->body;
+  EXPECT_EQ(json::parse(reply->body).at("triangles"), 32);
+  expect_problem(client_.Post("/v1/validate", "{}", "application/json"), 422);
+  EXPECT_TRUE(json::parse(get("/v1/solves")->body).at("solves").empty());
+}
+
+TEST_F(Solves, StreamALargeResultPlainAndCompressed) {
+  const std::string id = json::parse(post("large", "?wait=5&fields=summary")->body).at("id");
+  const std::string path = "/v1/solves/" + id + "/result";
+  const auto plain = client_.Get(path);
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(json::parse(plain->body).at("history").at("iteration").size(), 100'000u);
+  const auto compressed = client_.Get(path, {{"Accept-Encoding", "br, gzip"}});
+  ASSERT_TRUE(compressed);
+  EXPECT_EQ(compressed->get_header_value("Content-Encoding"), "gzip");
+  EXPECT_EQ(compressed->body, plain->body);
+}
+
+TEST_F(Solves, AnswerHttp10WithoutChunks) {
+  const std::string id = json::parse(post("instant", "?wait=5")->body).at("id");
+  const std::string reply = send_raw(service_.port(), "GET /v1/solves/" + id + "/result HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(reply.find("chunked"), std::string::npos);
+  const std::size_t body = reply.find("\r\n\r\n");
+  ASSERT_NE(body, std::string::npos);
+  EXPECT_TRUE(json::accept(reply.substr(body + 4))) << reply;
+}
+
+}  // namespace
+}  // namespace signorini::server

@@ -1,0 +1,238 @@
+// What the store on disk does beyond store_test.cpp: it survives.
+
+#include "server/jobs/sqlite_store.hpp"
+
+#include <fstream>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "faulty_disk.hpp"
+#include "server/jobs/schema.hpp"
+#include "server/jobs/stored_form.hpp"
+#include "store_jobs.hpp"
+#include "temporary_directory.hpp"
+
+namespace signorini::server {
+namespace {
+
+class SqliteStoreTest : public testing::Test {
+ protected:
+  ~SqliteStoreTest() override { FaultyDisk::fail(FaultyDisk::Fault::none); }
+
+  /// As a process does that starts; the one before has died where it was.
+  SqliteStore& reopen(const StoreLimits& limits = {100, plenty, std::chrono::hours(1)}) {
+    store_.reset();
+    store_ = std::make_unique<SqliteStore>(directory_.path(), limits, FaultyDisk::vfs());
+    return *store_;
+  }
+
+  void close() { store_.reset(); }
+
+  std::string reason_not_to_open() {
+    try {
+      reopen();
+    } catch (const CannotOpenStore& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  SQLite::Database database() {
+    return SQLite::Database(file(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  }
+  std::string file() const { return directory_.path() + "/jobs.sqlite"; }
+
+  TemporaryDirectory directory_;
+
+ private:
+  std::unique_ptr<SqliteStore> store_;
+};
+
+TEST_F(SqliteStoreTest, KeepsEverythingAcrossProcesses) {
+  SqliteStore& first = reopen();
+  first.add(new_job("a", "{1}", "key"));
+  const Ending ending = success(800);
+  first.finish(*first.claim(), ending);
+  first.add(new_job("b", "{2}"));
+
+  SqliteStore& second = reopen();
+  EXPECT_EQ(second.find("a")->status, JobStatus::succeeded);
+  EXPECT_EQ(second.result("a")->solution->displacement_at_points, ending.solution->displacement_at_points);
+  EXPECT_EQ(second.add(new_job("c", "{1}", "key")), "a");
+  EXPECT_EQ(*second.claim()->problem, "{2}");
+}
+
+TEST_F(SqliteStoreTest, QueuesAgainWhatRanWhenTheProcessDied) {
+  SqliteStore& first = reopen();
+  first.add(new_job("a"));
+  const Claim dead = *first.claim();
+  SqliteStore& second = reopen();
+  ASSERT_EQ(second.find("a")->status, JobStatus::queued);
+  EXPECT_FALSE(second.find("a")->started);
+  EXPECT_FALSE(second.finish(dead, success()));
+  const Claim claim = *second.claim();
+  EXPECT_NE(claim.attempt, dead.attempt);
+  EXPECT_FALSE(second.finish(dead, success()));
+  EXPECT_TRUE(second.finish(claim, success()));
+}
+
+TEST_F(SqliteStoreTest, TriesThreeTimesAndNoMore) {
+  reopen().add(new_job("a"));
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    EXPECT_TRUE(reopen().claim()) << attempt;
+  }
+  SqliteStore& store = reopen();
+  EXPECT_FALSE(store.claim());
+  const Job job = *store.find("a");
+  EXPECT_EQ(job.status, JobStatus::failed);
+  EXPECT_TRUE(job.finished);
+  EXPECT_EQ(job.verdict.error->kind, "attempts-used-up");
+}
+
+TEST_F(SqliteStoreTest, AnAttemptGivenBackDoesNotCount) {
+  reopen().add(new_job("a"));
+  for (int i = 0; i < 5; ++i) {
+    SqliteStore& store = reopen();
+    EXPECT_TRUE(store.give_back(*store.claim()));
+  }
+  for (int attempt = 1; attempt <= 3; ++attempt) EXPECT_TRUE(reopen().claim()) << attempt;
+  EXPECT_EQ(reopen().find("a")->status, JobStatus::failed);
+}
+
+TEST_F(SqliteStoreTest, DoesNotRunAgainWhatWasToBeCancelled) {
+  SqliteStore& store = reopen();
+  store.add(new_job("a"));
+  store.claim();
+  EXPECT_EQ(store.cancel("a"), Cancellation::asked);
+  EXPECT_EQ(reopen().find("a")->status, JobStatus::cancelled);
+}
+
+TEST_F(SqliteStoreTest, CountsWhatIsThereAlready) {
+  SqliteStore& first = reopen();
+  for (const char* id : {"a", "b"}) {
+    first.add(new_job(id));
+    first.finish(*first.claim(), success(10'000));
+  }
+  SqliteStore& second = reopen({100, 25'000, std::chrono::hours(1)});
+  second.add(new_job("c"));
+  second.finish(*second.claim(), success(10'000));
+  EXPECT_EQ(ids(second.list({})), (std::vector<std::string>{"c", "b"}));
+}
+
+TEST_F(SqliteStoreTest, LeavesNothingOfWhatIsRemoved) {
+  SqliteStore& store = reopen();
+  store.add(new_job("a", "{}", "key"));
+  store.finish(*store.claim(), success(1000));
+  store.remove_ended("a");
+  close();
+  SQLite::Database raw = database();
+  for (const char* table : {"jobs", "problems", "results", "idempotency_keys"}) {
+    EXPECT_EQ(raw.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 0) << table;
+  }
+}
+
+TEST_F(SqliteStoreTest, BelongsToOneServiceAtATime) {
+  reopen();
+  try {
+    SqliteStore(directory_.path(), {});
+    ADD_FAILURE() << "opened twice";
+  } catch (const CannotOpenStore& error) {
+    EXPECT_NE(std::string(error.what()).find("another service"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(SqliteStoreTest, SaysWhyItCannotBeOpened) {
+  std::ofstream(directory_.path() + "/a-file") << "x";
+  EXPECT_THROW(SqliteStore(directory_.path() + "/a-file", {}), CannotOpenStore);
+  EXPECT_THROW(SqliteStore(directory_.path() + "/a-file/below", {}), CannotOpenStore);
+  // Where even root may not write.
+  EXPECT_THROW(SqliteStore("/proc/sys", {}), CannotOpenStore);
+  std::ofstream(file()) << "this is no database, and long enough to be seen as none "
+                        << std::string(4096, 'x');
+  const std::string reason = reason_not_to_open();
+  EXPECT_NE(reason.find("jobs.sqlite"), std::string::npos) << reason;
+  EXPECT_NE(reason.find("not a database"), std::string::npos) << reason;
+}
+
+TEST_F(SqliteStoreTest, TakesOverTheJobsOfAnOlderVersion) {
+  {
+    SQLite::Database old = database();
+    migrate(old, 1);
+    old.exec("INSERT INTO jobs (id, status, title, created, bytes) VALUES ('a', 'queued', 'old', 7, 0)");
+    SQLite::Statement problem(old, "INSERT INTO problems VALUES ('a', ?)");
+    const std::string packed = pack_text("{}");
+    problem.bind(1, packed.data(), static_cast<int>(packed.size()));
+    problem.exec();
+    EXPECT_EQ(old.execAndGet("PRAGMA user_version").getInt(), 1);
+  }
+  SqliteStore& store = reopen();
+  EXPECT_EQ(store.find("a")->title, "old");
+  EXPECT_EQ(store.add(new_job("b", "{}", "key")), "b");
+  close();
+  EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), schema_version());
+}
+
+TEST_F(SqliteStoreTest, DoesNotTouchTheJobsOfANewerVersion) {
+  reopen();
+  close();
+  database().exec("PRAGMA user_version = " + std::to_string(schema_version() + 1));
+  EXPECT_NE(reason_not_to_open().find("newer version"), std::string::npos);
+}
+
+/// The step that meets a fault changes nothing, and the next ones work when the fault is gone.
+TEST_F(SqliteStoreTest, RefusesWhileTheDiskFailsAndRecovers) {
+  for (const auto fault :
+       {FaultyDisk::Fault::full, FaultyDisk::Fault::cannot_sync, FaultyDisk::Fault::cannot_access}) {
+    SCOPED_TRACE(static_cast<int>(fault));
+    for (int writes_before = 0; writes_before < 4; ++writes_before) {
+      SqliteStore& store = reopen();
+      const std::string id = std::to_string(static_cast<int>(fault)) + std::to_string(writes_before);
+      store.add(new_job(id + "a"));
+      const Claim claim = *store.claim();
+      EXPECT_FALSE(store.trouble());
+
+      FaultyDisk::fail(fault, writes_before);
+      EXPECT_THROW({ store.finish(claim, success(100'000)); }, StoreUnavailable);
+      FaultyDisk::fail(fault);
+      EXPECT_THROW(store.add(new_job(id + "b", "{}", id)), StoreUnavailable);
+      EXPECT_THROW(store.cancel(id + "a"), StoreUnavailable);
+      EXPECT_TRUE(store.trouble());
+
+      FaultyDisk::fail(FaultyDisk::Fault::none);
+      EXPECT_FALSE(store.trouble());
+      EXPECT_EQ(store.find(id + "a")->status, JobStatus::running);
+      EXPECT_FALSE(store.find(id + "b"));
+      EXPECT_TRUE(store.finish(claim, success(100'000)));
+      EXPECT_EQ(store.add(new_job(id + "b", "{}", id)), id + "b");
+      store.finish(*store.claim(), success());
+      EXPECT_EQ(reopen().find(id + "a")->status, JobStatus::succeeded);
+    }
+  }
+  close();
+  EXPECT_EQ(database().execAndGet("PRAGMA integrity_check").getString(), "ok");
+}
+
+TEST_F(SqliteStoreTest, AReaderDoesNotWaitForAWriter) {
+  SqliteStore& store = reopen();
+  store.add(new_job("a"));
+  store.add(new_job("b"));
+  const Claim claim = *store.claim();
+  std::atomic<bool> written = false;
+  std::thread writer([&] {
+    store.finish(claim, success(std::size_t{100} << 20));
+    written = true;
+  });
+  auto longest = std::chrono::steady_clock::duration::zero();
+  while (!written) {
+    const auto begin = std::chrono::steady_clock::now();
+    store.find("b");
+    longest = std::max(longest, std::chrono::steady_clock::now() - begin);
+  }
+  writer.join();
+  EXPECT_LT(longest, std::chrono::milliseconds(250));
+  EXPECT_EQ(store.result("a")->solution->displacement_at_points.size(), (100 << 20) / 8);
+}
+
+}  // namespace
+}  // namespace signorini::server

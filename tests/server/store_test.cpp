@@ -1,0 +1,286 @@
+// What every store of jobs does, run for each of them.
+
+#include <functional>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "server/jobs/memory_store.hpp"
+#include "server/jobs/sqlite_store.hpp"
+#include "store_jobs.hpp"
+#include "temporary_directory.hpp"
+
+namespace signorini::server {
+namespace {
+
+struct StoreKind {
+  const char* name;
+  std::function<std::unique_ptr<JobStore>(const std::string& directory, const StoreLimits& limits)> open;
+};
+
+void PrintTo(const StoreKind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
+class Store : public testing::TestWithParam<StoreKind> {
+ protected:
+  /// One store a test.
+  JobStore& open(std::size_t queue, std::size_t keep_bytes = plenty,
+                 std::chrono::seconds keep = std::chrono::hours(1)) {
+    store_ = GetParam().open(directory_.path(), {queue, keep_bytes, keep});
+    return *store_;
+  }
+
+ private:
+  TemporaryDirectory directory_;
+  std::unique_ptr<JobStore> store_;
+};
+
+TEST_P(Store, ClaimsTheOldestFirst) {
+  JobStore& store = open(3);
+  store.add(new_job("a"));
+  store.add(new_job("b"));
+  EXPECT_EQ(store.claim()->job.id, "a");
+  EXPECT_EQ(store.claim()->job.id, "b");
+  EXPECT_FALSE(store.claim());
+}
+
+TEST_P(Store, HandsOutWhatItWasGiven) {
+  JobStore& store = open(3);
+  NewJob sent = new_job("a", "{\"x\": \"\\u00fc \xc3\xbc\"}");
+  sent.title = "a plate";
+  EXPECT_EQ(store.add(sent), "a");
+  Job found = *store.find("a");
+  EXPECT_EQ(found.title, "a plate");
+  EXPECT_EQ(found.status, JobStatus::queued);
+  EXPECT_EQ(iso8601(found.created), iso8601(sent.created));
+  EXPECT_FALSE(found.started);
+  const Claim claim = *store.claim();
+  EXPECT_EQ(*claim.problem, *sent.problem);
+  EXPECT_EQ(claim.job.title, "a plate");
+  EXPECT_TRUE(claim.job.started);
+  found = *store.find("a");
+  EXPECT_EQ(found.status, JobStatus::running);
+  EXPECT_TRUE(found.started);
+  EXPECT_FALSE(found.finished);
+  EXPECT_FALSE(store.result("a")->solution);
+  EXPECT_EQ(*store.result("a")->problem, *sent.problem);
+}
+
+TEST_P(Store, RefusesMoreThanTheQueueHolds) {
+  JobStore& store = open(2);
+  store.add(new_job("a"));
+  store.add(new_job("b"));
+  EXPECT_THROW(store.add(new_job("c")), QueueFull);
+  EXPECT_FALSE(store.find("c"));
+  store.claim();
+  EXPECT_NO_THROW(store.add(new_job("c")));
+}
+
+TEST_P(Store, FinishesOnceAndOnlyWithTheLatestAttempt) {
+  JobStore& store = open(2);
+  store.add(new_job("a"));
+  Claim claim = *store.claim();
+  Claim stale = claim;
+  stale.attempt += 1;
+  EXPECT_FALSE(store.finish(stale, success()));
+  EXPECT_TRUE(store.finish(claim, success()));
+  EXPECT_FALSE(store.finish(claim, success()));
+  EXPECT_FALSE(store.give_back(claim));
+  EXPECT_EQ(store.find("a")->status, JobStatus::succeeded);
+  EXPECT_TRUE(store.find("a")->finished);
+}
+
+TEST_P(Store, KeepsTheVerdictAndTheFields) {
+  JobStore& store = open(2);
+  store.add(new_job("a"));
+  Ending ending = success(800);
+  ending.status = JobStatus::failed;
+  ending.error = ProblemDetails{"diverged", "It diverged", "take less", {{"pointer", "/a", "is b"}}};
+  store.finish(*store.claim(), ending);
+  const Job found = *store.find("a");
+  EXPECT_EQ(found.status, JobStatus::failed);
+  EXPECT_EQ(to_json(*found.verdict.error), to_json(*ending.error));
+  EXPECT_EQ(found.verdict.summary->iterations, ending.solution->summary.iterations);
+  EXPECT_EQ(found.verdict.last_iteration->number, ending.history->back().number);
+  const JobResult result = *store.result("a");
+  EXPECT_EQ(result.solution->displacement_at_points, ending.solution->displacement_at_points);
+  EXPECT_EQ(result.history->size(), ending.history->size());
+}
+
+TEST_P(Store, KeepsTheHistoryOfAnEndWithoutASolution) {
+  JobStore& store = open(2);
+  store.add(new_job("a"));
+  Ending ending = cancelled_ending("enough");
+  ending.history = std::make_shared<const std::vector<Iteration>>(7);
+  store.finish(*store.claim(), ending);
+  EXPECT_FALSE(store.find("a")->verdict.summary);
+  EXPECT_FALSE(store.result("a")->solution);
+  EXPECT_EQ(store.result("a")->history->size(), 7u);
+}
+
+TEST_P(Store, CancelsWhatIsQueuedAndRemembersToCancelWhatRuns) {
+  JobStore& store = open(2);
+  store.add(new_job("a"));
+  EXPECT_FALSE(store.remove_ended("a"));
+  const Claim claim = *store.claim();
+  EXPECT_EQ(store.cancel("a"), Cancellation::asked);
+  EXPECT_FALSE(store.remove_ended("a"));
+  EXPECT_FALSE(store.give_back(claim));
+  store.finish(claim, success());
+  EXPECT_EQ(store.cancel("a"), Cancellation::none);
+  EXPECT_TRUE(store.remove_ended("a"));
+  EXPECT_FALSE(store.find("a"));
+  EXPECT_FALSE(store.result("a"));
+  EXPECT_FALSE(store.remove_ended("a"));
+  EXPECT_EQ(store.cancel("a"), Cancellation::none);
+}
+
+TEST_P(Store, ACancelledJobLeavesTheQueue) {
+  JobStore& store = open(1);
+  store.add(new_job("a"));
+  EXPECT_EQ(store.cancel("a"), Cancellation::ended);
+  EXPECT_FALSE(store.claim());
+  EXPECT_EQ(store.find("a")->status, JobStatus::cancelled);
+  EXPECT_NO_THROW(store.add(new_job("b")));
+}
+
+TEST_P(Store, AJobGivenBackIsTheNextAgain) {
+  JobStore& store = open(3);
+  for (const char* id : {"a", "b", "c"}) store.add(new_job(id));
+  const Claim a = *store.claim();
+  const Claim b = *store.claim();
+  for (const Claim& claim : {b, a}) EXPECT_TRUE(store.give_back(claim));
+  EXPECT_EQ(store.find("a")->status, JobStatus::queued);
+  EXPECT_FALSE(store.find("a")->started);
+  const Claim again = *store.claim();
+  EXPECT_EQ(again.job.id, "a");
+  EXPECT_FALSE(store.finish(a, success()));
+  EXPECT_TRUE(store.finish(again, success()));
+  EXPECT_EQ(store.claim()->job.id, "b");
+}
+
+TEST_P(Store, TheSameKeyAndProblemAreTheSameJob) {
+  JobStore& store = open(1);
+  EXPECT_EQ(store.add(new_job("a", "{1}", "key")), "a");
+  // A full queue is no hindrance: nothing is queued.
+  EXPECT_EQ(store.add(new_job("b", "{1}", "key")), "a");
+  EXPECT_FALSE(store.find("b"));
+  try {
+    store.add(new_job("b", "{2}", "key"));
+    ADD_FAILURE() << "taken";
+  } catch (const KeyReused& reused) {
+    EXPECT_EQ(reused.job, "a");
+  }
+  store.finish(*store.claim(), success());
+  EXPECT_EQ(store.add(new_job("b", "{1}", "key")), "a");
+  EXPECT_EQ(store.add(new_job("c", "{1}", "another")), "c");
+}
+
+TEST_P(Store, AKeyGoesWithItsJob) {
+  JobStore& store = open(2);
+  store.add(new_job("a", "{1}", "key"));
+  store.finish(*store.claim(), success());
+  store.remove_ended("a");
+  EXPECT_EQ(store.add(new_job("b", "{2}", "key")), "b");
+}
+
+TEST_P(Store, DropsTheOldestResultsButNeverTheLast) {
+  JobStore& store = open(9, 25'000);
+  for (const char* id : {"a", "b", "c"}) {
+    store.add(new_job(id));
+    store.finish(*store.claim(), success(10'000));
+  }
+  EXPECT_EQ(ids(store.list({})), (std::vector<std::string>{"c", "b"}));
+  store.add(new_job("d"));
+  store.finish(*store.claim(), success(1'000'000));
+  EXPECT_EQ(ids(store.list({})), (std::vector<std::string>{"d"}));
+}
+
+TEST_P(Store, KeepsJobsThatHaveNotEnded) {
+  JobStore& store = open(9, 0);
+  store.add(new_job("a"));
+  store.claim();
+  store.add(new_job("b"));
+  for (const char* id : {"c", "d"}) {
+    store.add(new_job(id));
+    store.cancel(id);
+  }
+  EXPECT_EQ(ids(store.list({})), (std::vector<std::string>{"d", "b", "a"}));
+}
+
+TEST_P(Store, RemovingAResultMakesRoom) {
+  JobStore& store = open(9, 25'000);
+  for (const char* id : {"a", "b"}) {
+    store.add(new_job(id));
+    store.finish(*store.claim(), success(10'000));
+  }
+  store.remove_ended("b");
+  store.add(new_job("c"));
+  store.finish(*store.claim(), success(10'000));
+  EXPECT_EQ(ids(store.list({})), (std::vector<std::string>{"c", "a"}));
+}
+
+TEST_P(Store, DropsWhatEndedTooLongAgo) {
+  JobStore& store = open(9, plenty, std::chrono::seconds(1));
+  store.add(new_job("a"));
+  store.finish(*store.claim(), success());
+  store.add(new_job("b"));
+  store.drop_expired();
+  EXPECT_TRUE(store.find("a"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  store.drop_expired();
+  EXPECT_EQ(ids(store.list({})), std::vector<std::string>{"b"});
+}
+
+TEST_P(Store, ListsNewestFirstInPages) {
+  JobStore& store = open(9);
+  for (const char* id : {"a", "b", "c", "d"}) store.add(new_job(id));
+  store.claim();
+  ListQuery query;
+  query.limit = 2;
+  JobPage page = store.list(query);
+  EXPECT_EQ(ids(page), (std::vector<std::string>{"d", "c"}));
+  EXPECT_TRUE(page.more);
+  query.after = "c";
+  page = store.list(query);
+  EXPECT_EQ(ids(page), (std::vector<std::string>{"b", "a"}));
+  EXPECT_FALSE(page.more);
+  query.status = JobStatus::queued;
+  EXPECT_EQ(ids(store.list(query)), (std::vector<std::string>{"b"}));
+}
+
+TEST_P(Store, GivesEachJobToOneOfManyThreads) {
+  constexpr int jobs = 200;
+  JobStore& store = open(jobs);
+  std::atomic<int> ended = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < jobs / 4; ++i) {
+        store.add(new_job(std::to_string(1000 * t + i)));
+        const std::optional<Claim> claim = store.claim();
+        if (claim && store.finish(*claim, success())) ++ended;
+        store.list({});
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(ended, jobs);
+  EXPECT_FALSE(store.claim());
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Store,
+                         testing::Values(StoreKind{"Memory",
+                                                   [](const std::string&, const StoreLimits& limits) {
+                                                     return std::make_unique<MemoryStore>(limits);
+                                                   }},
+                                         StoreKind{
+                                             "Sqlite",
+                                             [](const std::string& directory, const StoreLimits& limits) {
+                                               return std::make_unique<SqliteStore>(directory, limits);
+                                             }}),
+                         [](const auto& kind) { return kind.param.name; });
+
+}  // namespace
+}  // namespace signorini::server

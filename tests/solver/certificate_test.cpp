@@ -1,0 +1,278 @@
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "certify/admissible_displacement.hpp"
+#include "certify/contact_pressure.hpp"
+#include "contact/active_set.hpp"
+#include "contact/condense.hpp"
+#include "mesh/rectangle.hpp"
+#include "mesh/refine.hpp"
+#include "norms.hpp"
+#include "problems/membrane.hpp"
+#include "summarize.hpp"
+#include "system/hybrid_system.hpp"
+#include "system/recovery.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr std::array schemes{Scheme::conforming, Scheme::nonconforming};
+
+Solution solve_exactly(const Problem& problem) {
+  return solve(problem, {ActiveSet{}, std::nullopt});
+}
+
+/// Gauss–Legendre on [0, 1].
+struct GaussRule {
+  static constexpr int size = 20;
+  std::array<double, size> points, weights;
+
+  GaussRule() {
+    for (int i = 0; i < size; ++i) {
+      double x = std::cos(std::numbers::pi * (i + 0.75) / (size + 0.5)), slope = 0;
+      for (int step = 0; step < 8; ++step) {
+        double before = 1, value = x;
+        for (int k = 2; k <= size; ++k) before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
+        slope = size * (x * value - before) / (x * x - 1);
+        x -= value / slope;
+      }
+      points[i] = (1 + x) / 2;
+      weights[i] = 1 / ((1 - x * x) * slope * slope);
+    }
+  }
+};
+
+const GaussRule gauss;
+
+/// ∫ f ds from a to b; exact enough for half-integer powers of the distance from a too.
+template <typename Function>
+double integrate_from(const Point& a, const Point& b, const Function& f) {
+  double sum = 0;
+  for (int i = 0; i < GaussRule::size; ++i) {
+    const double t = gauss.points[i], s = t * t;
+    sum += gauss.weights[i] * 2 * t * f(s);
+  }
+  return sum * (b - a).norm();
+}
+
+/// ∫ f(reference point) over the reference triangle, from one of its corners; exact enough for half-integer
+/// powers of the distance from the corner, and for functions that jump from ray to ray there.
+template <typename Function>
+double integrate_from(int corner, const Function& f) {
+  const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+  const Point &a = corners[corner], &b = corners[(corner + 1) % 3], &c = corners[(corner + 2) % 3];
+  double sum = 0;
+  for (int i = 0; i < GaussRule::size; ++i)
+    for (int j = 0; j < GaussRule::size; ++j) {
+      const double t = gauss.points[i], r = t * t, s = gauss.points[j];
+      const Point far = (1 - s) * b + s * c;
+      sum += gauss.weights[i] * gauss.weights[j] * 2 * t * r * f(Point(a + r * (far - a)));
+    }
+  return sum;
+}
+
+/// The certificate's fields for the signorini-edge, rebuilt from its ingredients: v, σ* and p*.
+class EdgeFields {
+ public:
+  EdgeFields(const Problem& problem, const std::shared_ptr<const Mesh>& mesh)
+      : discretization_(problem, *mesh), progress_(observer_, std::nullopt) {
+    const HybridSystem system = assemble(discretization_, progress_);
+    const Operator made(mesh, discretization_.clearance, system.matrix, false, progress_);
+    CondensedContact condensed(made, system.right);
+    const ContactResult found = active_set(condensed.contact(), {}, progress_);
+    const Eigen::VectorXd x = condensed.traces(found.clearance);
+    Recovered fields = recover(discretization_, x, progress_);
+    solution_ = summarize(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
+                          {ActiveSet{}, std::nullopt}, progress_);
+    v_ = std::make_unique<AdmissibleDisplacement>(discretization_, solution_, x);
+    pressure_ = std::make_unique<ContactPressure>(discretization_, solution_.stress,
+                                                  discretization_.clearance.clearance(found.clearance));
+  }
+
+  const Mesh& mesh() const { return discretization_.mesh; }
+  const ErrorBound& bound() const { return solution_.summary.error_bound.value(); }
+  const std::vector<ContactEdge>& contact_edges() const { return discretization_.clearance.edges; }
+
+  /// The corner of the triangle from which ∇v and ∇u are smooth: the singular point, or the one opposite a
+  /// lifted edge.
+  int corner_to_integrate_from(int t) const {
+    for (int e = 0; e < 3; ++e) {
+      const bool is_boundary = mesh().edge_triangles[mesh().triangle_edges[t][e]][1] < 0;
+      if ((is_boundary && v_->is_lifted(t)) || mesh().corners(t)[e].norm() == 0) return e;
+    }
+    return 0;
+  }
+
+  Vector stress(int t, const Point& reference) const {
+    const AffineMap map(mesh().corners(t));
+    const RaviartThomas& element = discretization_.spaces().row;
+    const Vector rise = map.jacobian.inverse().transpose() * (quadratic_gradients(reference) * potential(t));
+    return Vector(element.values(map, reference) * solution_.stress.col(t)) + Vector(rise.y(), -rise.x());
+  }
+
+  Vector slope(int t, const Point& reference) const {
+    const AffineMap map(mesh().corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    Tensor<1> slope = inverse.transpose() * (quadratic_gradients(reference) * v_->on<1>(t).transpose());
+    Eigen::Matrix<double, 1, 1> value = Eigen::Matrix<double, 1, 1>::Zero();
+    v_->add_lifts<1>(t, reference, inverse, value, slope);
+    return slope;
+  }
+
+  double pressure(int i, double s) const {
+    return (1 - s) * pressure_->at_ends[i][0] + s * pressure_->at_ends[i][1];
+  }
+  double room(int i, double s) const { return v_->room(contact_edges()[i], s); }
+
+ private:
+  Eigen::Matrix<double, 6, 1> potential(int t) const {
+    Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
+    for (int z = 0; z < 3; ++z)
+      if (const auto found = pressure_->potential_at_points.find(mesh().triangles[t][z]);
+          found != pressure_->potential_at_points.end())
+        values[z] = found->second;
+    for (int e = 0; e < 3; ++e) {
+      const auto found = pressure_->potential_at_middles.find(mesh().triangle_edges[t][e]);
+      values[3 + e] = found != pressure_->potential_at_middles.end()
+                          ? found->second
+                          : (values[(e + 1) % 3] + values[(e + 2) % 3]) / 2;
+    }
+    return values;
+  }
+
+  Discretization discretization_;
+  Observer observer_;
+  Progress progress_;
+  Solution solution_;
+  std::unique_ptr<AdmissibleDisplacement> v_;
+  std::unique_ptr<ContactPressure> pressure_;
+};
+
+/// The two sides of the identity of design.md, "The certificate", and the error of the stress alone.
+struct Sides {
+  double left = 0, right = 0, stress_error = 0;
+};
+
+Sides sides_of(const EdgeFields& fields) {
+  using Exact = problems::SignoriniEdge;
+  const Mesh& mesh = fields.mesh();
+  Sides sides;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const AffineMap map(mesh.corners(t));
+    const auto integral = [&](const auto& f) {
+      return map.determinant * integrate_from(fields.corner_to_integrate_from(t), f);
+    };
+    sides.stress_error += integral(
+        [&](const Point& x) { return (Exact::stress(map(x)) - fields.stress(t, x)).squaredNorm(); });
+    sides.left +=
+        integral([&](const Point& x) { return (Exact::stress(map(x)) - fields.slope(t, x)).squaredNorm(); });
+    sides.right += integral([&](const Point& x) { return (fields.stress(t, x) - fields.slope(t, x)).squaredNorm(); });
+  }
+  sides.left += sides.stress_error;
+  for (int i = 0; i < static_cast<int>(fields.contact_edges().size()); ++i) {
+    const auto& [first, second] = mesh.edges[fields.contact_edges()[i].edge];
+    const Point a = mesh.points[first], b = mesh.points[second];
+    // From the end that is closer to the singular point.
+    const bool forward = a.norm() <= b.norm();
+    const auto integral = [&](const auto& f) {
+      return integrate_from(a, b, [&](double s) { return forward ? f(s) : f(1 - s); });
+    };
+    const auto x = [&](double s) { return a.x() + s * (b.x() - a.x()); };
+    const auto gap_left = [&](double s) { return x(s) > 0 ? std::pow(x(s), 1.5) : 0; };
+    const auto pressure = [&](double s) { return x(s) < 0 ? 1.5 * std::sqrt(-x(s)) : 0; };
+    sides.left += 2 * integral([&](double s) { return fields.pressure(i, s) * gap_left(s); });
+    sides.left += 2 * integral([&](double s) { return pressure(s) * fields.room(i, s); });
+    sides.right += 2 * integral([&](double s) { return fields.pressure(i, s) * fields.room(i, s); });
+  }
+  return sides;
+}
+
+TEST(Certificate, HoldsTheIdentityOnAnExactSolution) {
+  for (const Scheme scheme : schemes)
+    for (const int n : {2, 6}) {
+      const Problem problem = problems::SignoriniEdge::problem(scheme, n);
+      const auto mesh = std::make_shared<const Mesh>(
+          rectangle_mesh(std::get<Rectangle>(problem.domain), {2 * n, n}, Pattern::crossed));
+      const EdgeFields fields(problem, mesh);
+      const Sides sides = sides_of(fields);
+      EXPECT_NEAR(sides.left, sides.right, 1e-10 * sides.right) << n;
+      EXPECT_LE(std::sqrt(sides.left), fields.bound().value * (1 + 1e-9));
+      EXPECT_GE(std::sqrt(sides.left), 0.65 * fields.bound().value);
+      EXPECT_TRUE(fields.bound().guaranteed);
+    }
+}
+
+TEST(Certificate, BoundsTheErrorOfThePapersProblem) {
+  constexpr double energy = -0.914792950798;
+  for (const Scheme scheme : schemes)
+    for (const int n : {4, 8, 16, 32}) {
+      const ErrorBound bound = solve_exactly(problems::paper(scheme, n)).summary.error_bound.value();
+      EXPECT_TRUE(bound.guaranteed);
+      EXPECT_LE(bound.energy_lower, energy);
+      EXPECT_GE(bound.energy_upper, energy);
+      // What both energies lack is half the square of the error.
+      EXPECT_LE(std::sqrt(2 * (bound.energy_upper - bound.energy_lower)), bound.value * (1 + 1e-9));
+    }
+}
+
+/// ‖σ − σ_f‖_C of two solutions, the finer one on the mesh refined so many times.
+double distance(const Problem& problem, const Solution& coarse, const Solution& fine, int refinements) {
+  const RaviartThomas &element = spaces_of(coarse.scheme, 1).row, &finer = spaces_of(fine.scheme, 1).row;
+  return std::sqrt(integrate(fine, [&](int t, const AffineMap& map, const Point& reference) {
+    const int parent = t >> (2 * refinements);
+    const AffineMap parent_map(coarse.mesh.corners(parent));
+    const Point x = map(reference);
+    const Point there = parent_map.jacobian.inverse() * (x - coarse.mesh.corners(parent)[0]);
+    const Vector difference =
+        finer.values(map, reference) * fine.stress.col(t) - element.values(parent_map, there) * coarse.stress.col(parent);
+    const auto compliance = compliance_at(problem.material, x);
+    return difference.dot(compliance * difference);
+  }));
+}
+
+TEST(Certificate, BoundsTheErrorOfFiftyRandomProblems) {
+  int guaranteed = 0;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    Problem problem = problems::random(seed);
+    const auto& divisions = std::get<Divisions>(problem.mesh.fineness);
+    problem.mesh.fineness = Divisions{divisions.x / 2, divisions.y / 2};
+    const Solution coarse = solve_exactly(problem);
+    const ErrorBound bound = coarse.summary.error_bound.value();
+    problem.scheme = Scheme::conforming;
+    problem.mesh.refine = 2;
+    const Solution fine = solve_exactly(problem);
+    const ErrorBound fine_bound = fine.summary.error_bound.value();
+
+    const double energy = (fine_bound.energy_lower + fine_bound.energy_upper) / 2;
+    EXPECT_LT(fine_bound.value, 0.6 * bound.value) << seed;
+    EXPECT_LE(bound.energy_lower, energy) << seed;
+    EXPECT_GE(bound.energy_upper, energy) << seed;
+    const double error = distance(problem, coarse, fine, 2);
+    EXPECT_LE(error - fine_bound.value, bound.value) << seed;
+    if (!bound.guaranteed) {
+      EXPECT_FALSE(bound.unmet.empty());
+      continue;
+    }
+    ++guaranteed;
+    EXPECT_GE(error + fine_bound.value, 0.2 * bound.value) << seed;
+  }
+  // On meshes so coarse some boundary values are not resolved.
+  EXPECT_GE(guaranteed, 45);
+}
+
+TEST(Certificate, SharesTheBoundOutToTheTriangles) {
+  for (const Scheme scheme : schemes) {
+    const Solution solution = solve_exactly(problems::SignoriniEdge::problem(scheme, 8));
+    const ErrorBound::Parts& parts = solution.summary.error_bound.value().parts;
+    ASSERT_EQ(solution.error_squares.size(), solution.summary.triangles);
+    EXPECT_GE(solution.error_squares.minCoeff(), 0);
+    const double sum = parts.constitutive * parts.constitutive + parts.contact * parts.contact +
+                       parts.oscillation * parts.oscillation + parts.equilibration * parts.equilibration;
+    EXPECT_NEAR(solution.error_squares.sum(), sum, 1e-12 * sum);
+  }
+}
+
+}  // namespace
+}  // namespace signorini

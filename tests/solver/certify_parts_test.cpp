@@ -1,0 +1,223 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "certify/admissible_displacement.hpp"
+#include "certify/edge_tractions.hpp"
+#include "certify/lift.hpp"
+#include "certify/macro_element.hpp"
+#include "problems/elasticity.hpp"
+#include "solve.hpp"
+
+namespace signorini {
+namespace {
+
+/// A solved problem with what its certificate is made from.
+struct Made {
+  Made(const Problem& posed, const Solution& solved)
+      : problem(posed), solution(solved), discretization(problem, solution.mesh) {
+    clearance.resize(discretization.clearance.rows.size());
+    Eigen::Index next = 0;
+    for (const ContactPart& part : solution.contact)
+      for (const double own : part.clearance) clearance[next++] = own;
+  }
+
+  Problem problem;
+  Solution solution;
+  Discretization discretization;
+  Eigen::VectorXd clearance;
+};
+
+/// A block pressed by a punch, bent besides, on a foundation that it leaves at one side.
+Problem punch(Scheme scheme) {
+  Problem problem;
+  problem.mesh = {Divisions{8, 6}, Pattern::crossed};
+  problem.scheme = scheme;
+  problem.material = YoungPoisson{Field(2), Field(0.35), Plane::strain};
+  problem.boundary = {
+      {"top", Fixed{VectorField(0.02, -0.05)}},
+      {"bottom",
+       Contact{Field([](const Point& x, const Vector&) { return 0.2 * std::pow(x.x() - 0.3, 2); }, "/t")}},
+      {"left", Traction{VectorField(0.03, -0.02)}}};
+  problem.body = VectorField(0.1, -0.2);
+  return problem;
+}
+
+class Parts : public testing::TestWithParam<Scheme> {};
+
+TEST_P(Parts, EveryTriangleIsInBalanceOfForcesAndMoments) {
+  const Problem problem = punch(GetParam());
+  const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+  const ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
+  EXPECT_TRUE(pressure.unmet.empty());
+  const EdgeTractions tractions(made.discretization, made.solution.stress, pressure);
+  EXPECT_TRUE(tractions.unmet().empty());
+  const Mesh& mesh = made.solution.mesh;
+  for (int t = 0; t < made.discretization.triangles(); ++t) {
+    const auto corners = mesh.corners(t);
+    const Point centroid = (corners[0] + corners[1] + corners[2]) / 3;
+    Vector force = AffineMap(corners).determinant / 2 * Vector(0.1, -0.2);
+    double moment = 0, size = 0;
+    for (int e = 0; e < 3; ++e) {
+      const Vector a = corners[(e + 1) % 3] - centroid, b = corners[(e + 2) % 3] - centroid;
+      const Eigen::Matrix2d ends = tractions.on(t, e);
+      const double length = (b - a).norm();
+      force += length * (ends.col(0) + ends.col(1)) / 2;
+      // ∫ x × t of two linear functions.
+      const auto cross = [](const Vector& x, const Vector& y) { return x.x() * y.y() - x.y() * y.x(); };
+      moment += length / 6 *
+                (2 * cross(a, ends.col(0)) + cross(a, ends.col(1)) + cross(b, ends.col(0)) +
+                 2 * cross(b, ends.col(1)));
+      size += length * ends.norm();
+    }
+    EXPECT_LE(force.norm(), 1e-10 * size);
+    EXPECT_LE(std::abs(moment), 1e-10 * size * (corners[1] - corners[0]).norm());
+  }
+}
+
+TEST_P(Parts, ThePressureIsNowhereNegativeAndHasTheForceOfTheDiscreteOne) {
+  const Problem problem = punch(GetParam());
+  const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+  const ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
+  double force = 0, change = 0, moment_of_change = 0;
+  for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
+    const int edge = made.discretization.clearance.edges[i].edge;
+    const auto& [a, b] = made.solution.mesh.edges[edge];
+    const double length = made.solution.mesh.length(edge);
+    const double x = made.solution.mesh.points[a].x(), y = made.solution.mesh.points[b].x();
+    const auto [p, q] = pressure.at_ends[i];
+    const auto [dp, dq] = pressure.changes[i];
+    EXPECT_GE(std::min(p, q), 0);
+    force += length * (p + q) / 2;
+    change += length * (dp + dq) / 2;
+    moment_of_change += length * (2 * x * dp + x * dq + y * dp + 2 * y * dq) / 6;
+  }
+  EXPECT_NEAR(force, made.solution.summary.contact.force, 1e-10 * force);
+  EXPECT_NEAR(change, 0, 1e-10 * force);
+  EXPECT_NEAR(moment_of_change, 0, 1e-10 * force);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, Parts, testing::Values(Scheme::conforming, Scheme::nonconforming));
+
+TEST(AdmissibleDisplacement, MeetsEveryConditionAtEveryPoint) {
+  Problem problem;
+  problem.mesh = {Divisions{5, 5}, Pattern::alternating};
+  const auto fixed = [](const Point& x, const Vector&) {
+    return 0.3 * std::exp(x.y()) * std::sin(2 * x.y());
+  };
+  const auto gap = [](const Point& x, const Vector&) { return 0.05 * std::cos(7 * x.x()); };
+  problem.body = VectorField(-8);
+  problem.boundary = {{"left", Fixed{VectorField(Field(fixed, "/t"))}},
+                      {"bottom", Contact{Field(gap, "/t")}}};
+  problem.boundary["right"] = Fixed{VectorField(1)};
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    problem.scheme = scheme;
+    const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+    Eigen::VectorXd coupling = Eigen::VectorXd::Zero(made.discretization.traces.unknowns());
+    for (const ClearanceRow& row : made.discretization.clearance.rows)
+      if (row.unknown >= 0)
+        coupling[made.discretization.traces.free_unknowns() + row.unknown] =
+            made.clearance[&row - made.discretization.clearance.rows.data()];
+    const AdmissibleDisplacement v(made.discretization, made.solution, coupling);
+    EXPECT_TRUE(v.unmet().empty());
+    for (const BoundaryPart& part : made.solution.mesh.boundary)
+      for (const int edge : part.edges)
+        for (const double s : {0., 0.1, 0.37, 0.5, 0.83, 1.}) {
+          const auto& [a, b] = made.solution.mesh.edges[edge];
+          const Point x = made.solution.mesh.points[a] +
+                          s * (made.solution.mesh.points[b] - made.solution.mesh.points[a]);
+          const double value = v.on_edge(edge, s)[0];
+          if (part.name == "left") {
+            EXPECT_NEAR(value, fixed(x, {}), 1e-9);
+          }
+          if (part.name == "right") {
+            EXPECT_NEAR(value, 1, 1e-12);
+          }
+          // u ≥ −g for the membrane.
+          if (part.name == "bottom") {
+            EXPECT_GE(value, -gap(x, {}) - 1e-9);
+          }
+        }
+  }
+}
+
+/// τ n for τ = (xx, yy, xy).
+Vector traction(const Eigen::Vector3d& stress, const Vector& n) {
+  return {stress[0] * n.x() + stress[2] * n.y(), stress[2] * n.x() + stress[1] * n.y()};
+}
+
+TEST(MacroElement, HasTheTractionsAndTheDivergenceThatItIsGiven) {
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  Eigen::Matrix<double, 3, 3> linear;  // (xx, yy, xy) = linear · (1, x, y)
+  for (double& entry : linear.reshaped()) entry = unit(generator);
+  const auto exact = [&](const Point& x) -> Eigen::Vector3d {
+    return linear * Eigen::Vector3d(1, x.x(), x.y());
+  };
+  const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+  Eigen::Matrix<double, MacroElement::kData, 1> data;
+  for (int e = 0; e < 3; ++e)
+    for (int end = 0; end < 2; ++end) {
+      const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
+      const Vector normal(b.y() - a.y(), a.x() - b.x());
+      const Eigen::Vector3d s = exact(end == 0 ? a : b);
+      data.segment<2>(4 * e + 2 * end) = traction(s, normal);
+    }
+  const Vector divergence(linear(0, 1) + linear(2, 2), linear(2, 1) + linear(1, 2));
+  for (int z = 0; z < 3; ++z) data.segment<2>(12 + 2 * z) = divergence;
+
+  const MacroElement& element = macro_element();
+  const Eigen::Matrix<double, MacroElement::kStresses, 1> stress = element.from_data * data;
+  // It does the same work as the linear stress on every displacement of the macro-element.
+  for (int node = 0; node < MacroElement::kNodes; ++node) {
+    Vector work = Vector::Zero(), exact_work = Vector::Zero();
+    for (const MacroElement::Place& place : MacroElement::places(1)) {
+      const Vector g = place.displacement_gradients.col(node);
+      work += place.weight * traction(MacroElement::stress(place, stress), g);
+      exact_work += place.weight * traction(exact(place.point), g);
+    }
+    EXPECT_LE((work - exact_work).norm(), 1e-12);
+  }
+  // Free stresses do no work on any displacement of the macro-element.
+  for (int k = 0; k < MacroElement::kFree; ++k)
+    for (int node = 0; node < MacroElement::kNodes; ++node) {
+      Vector work = Vector::Zero();
+      for (const MacroElement::Place& place : MacroElement::places(1)) {
+        const Eigen::Vector3d s = MacroElement::stress(place, element.free.col(k));
+        const Vector g = place.displacement_gradients.col(node);
+        work += place.weight * traction(s, g);
+      }
+      EXPECT_LE(work.norm(), 1e-12);
+    }
+}
+
+TEST(Lift, VanishesOnTheOtherEdgesAndHasItsOwnGradient) {
+  const Lift lift(1, [](double s) -> Eigen::VectorXd {
+    return Eigen::VectorXd::Constant(1, std::sin(3 * s) * s * (1 - s));
+  });
+  EXPECT_LE(lift.interpolation_error(), 1e-6);
+  EXPECT_NEAR(lift.value(0.3, 0.7)[0], std::sin(2.1) * 0.21, 1e-6);
+  EXPECT_NEAR(lift.value(0.4, 0)[0], 0, 1e-14);
+  EXPECT_NEAR(lift.value(0, 0.4)[0], 0, 1e-14);
+  constexpr double step = 1e-6;
+  const auto gradient = lift.gradient(0.3, 0.4, Vector(1, 0), Vector(0, 1));
+  EXPECT_NEAR(gradient(0, 0), (lift.value(0.3 + step, 0.4)[0] - lift.value(0.3 - step, 0.4)[0]) / (2 * step),
+              1e-8);
+  EXPECT_NEAR(gradient(0, 1), (lift.value(0.3, 0.4 + step)[0] - lift.value(0.3, 0.4 - step)[0]) / (2 * step),
+              1e-8);
+}
+
+TEST(NearestAdmissible, LiesOnOneConstraintOrInTheCorner) {
+  const Vector x(1, 0), y(0, 1);
+  EXPECT_EQ(*nearest_admissible(Vector(0.5, 0.5), {{x, 1, false}, {y, 1, false}}, 1), Vector(0.5, 0.5));
+  EXPECT_LE((*nearest_admissible(Vector(2, 0.5), {{x, 1, false}, {y, 1, false}}, 1) - Vector(1, 0.5)).norm(),
+            1e-14);
+  EXPECT_LE((*nearest_admissible(Vector(2, 3), {{x, 1, false}, {y, 1, false}}, 1) - Vector(1, 1)).norm(),
+            1e-14);
+  EXPECT_LE((*nearest_admissible(Vector(0, 0), {{x, 1, true}, {y, 1, false}}, 1) - Vector(1, 0)).norm(),
+            1e-14);
+  EXPECT_FALSE(nearest_admissible(Vector(0, 0), {{x, 1, true}, {x, 0.5, false}}, 1));
+}
+
+}  // namespace
+}  // namespace signorini

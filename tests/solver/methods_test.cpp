@@ -1,0 +1,242 @@
+// The three iterations against each other, against units, and at their limits.
+#include <gtest/gtest.h>
+
+#include "contact/accelerated_uzawa.hpp"
+#include "contact/active_set.hpp"
+#include "norms.hpp"
+#include "problems/membrane.hpp"
+
+namespace signorini {
+namespace {
+
+double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const double scale = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return scale == 0 ? 0 : (a - b).cwiseAbs().maxCoeff() / scale;
+}
+
+Eigen::Map<const Eigen::VectorXd> vector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+void expect_same_fields(const Solution& a, const Solution& b, double tolerance) {
+  EXPECT_LT(relative_difference(a.stress, b.stress), tolerance);
+  EXPECT_LT(relative_difference(a.displacement, b.displacement), tolerance);
+  EXPECT_LT(relative_difference(a.displacement_at_points, b.displacement_at_points), tolerance);
+  double clearance = 0, pressure = 0, largest_clearance = 0, largest_pressure = 0;
+  for (std::size_t part = 0; part < a.contact.size(); ++part) {
+    const auto la = vector(a.contact[part].clearance), lb = vector(b.contact[part].clearance);
+    const auto pa = vector(a.contact[part].pressure), pb = vector(b.contact[part].pressure);
+    clearance = std::max(clearance, (la - lb).lpNorm<Eigen::Infinity>());
+    pressure = std::max(pressure, (pa - pb).lpNorm<Eigen::Infinity>());
+    largest_clearance = std::max(largest_clearance, lb.lpNorm<Eigen::Infinity>());
+    largest_pressure = std::max(largest_pressure, pb.lpNorm<Eigen::Infinity>());
+  }
+  EXPECT_LE(clearance, tolerance * largest_clearance);
+  // Where nothing presses, the pressures are rounding of the stress.
+  EXPECT_LE(pressure, tolerance * std::max(largest_pressure, b.stress_at_centroids.cwiseAbs().maxCoeff()));
+}
+
+/// Opening both unknowns gives λ = (0.5, −2.5e-4): the second must close again, however little it violates.
+TEST(ActiveSetMethod, ClosesWhatIsViolatedALittle) {
+  ContactComplement contact;
+  contact.s = Eigen::Matrix2d{{2, 1}, {1, 2}};
+  contact.c = Eigen::Vector2d(1, 0.499625);
+  contact.weight = Eigen::Vector2d(1, 1);
+  Observer observer;
+  Progress progress(observer, std::nullopt);
+  const ContactResult result = active_set(contact, {}, progress);
+  EXPECT_EQ(result.outcome, Outcome::converged);
+  EXPECT_NEAR(result.clearance[0], 0.5, 1e-14);
+  EXPECT_EQ(result.clearance[1], 0);
+}
+
+/// S = AᵀA of any sign pattern; with fewer rows than columns it is singular, and c = S x + (pressures where
+/// x = 0) has the solution x nevertheless.
+TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
+  std::mt19937 engine(1);
+  std::normal_distribution<double> normal;
+  const auto random = [&](int rows, int columns) {
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(engine); }).eval();
+  };
+  for (const int n : {1, 2, 3, 10, 40}) {
+    for (const int rank : {n, std::max(1, n - 1)}) {
+      const Eigen::MatrixXd a = random(rank, n);
+      const Eigen::VectorXd x = random(n, 1).cwiseMax(0), p = random(n, 1).cwiseAbs();
+      ContactComplement contact;
+      contact.s = a.transpose() * a;
+      contact.weight = random(n, 1).cwiseAbs();
+      contact.c = contact.s * x - (x.array() > 0).select(0, p.cwiseProduct(contact.weight));
+      for (const bool started : {false, true}) {
+        Observer observer;
+        Progress progress(observer, std::nullopt);
+        Eigen::VectorXd start;
+        if (started) start = random(n, 1).cwiseAbs();
+        const ContactResult result = accelerated_uzawa(contact, {1e-12, 10000}, progress, start);
+        ASSERT_EQ(result.outcome, Outcome::converged) << n << ' ' << rank;
+        EXPECT_GE(result.clearance.minCoeff(), 0);
+        const double scale = (contact.s * x).norm() + contact.c.norm();
+        EXPECT_LT((contact.s * (result.clearance - x)).norm(), 1e-8 * scale) << n << ' ' << rank;
+      }
+    }
+  }
+}
+
+TEST(AcceleratedUzawaMethod, ItsCountGrowsMoreSlowlyThanTheRootOfTheDivisions) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    const auto count = [&](int n) {
+      return solve(problems::paper(scheme, n), {AcceleratedUzawa{1e-8}, {}}).summary.iterations;
+    };
+    const int coarse = count(16), fine = count(128);
+    EXPECT_LT(fine, coarse * std::sqrt(128. / 16)) << coarse;
+    EXPECT_LE(fine, 40);
+  }
+}
+
+class RandomProblems : public testing::TestWithParam<unsigned> {};
+
+TEST_P(RandomProblems, UzawaAndActiveSetAgree) {
+  const Problem problem = problems::random(GetParam());
+  const Solution exact = solve(problem, {ActiveSet{}, {}});
+  const Solution uzawa = solve(problem, {AcceleratedUzawa{1e-12, 100000}, {}});
+  ASSERT_EQ(exact.summary.outcome, Outcome::converged);
+  ASSERT_EQ(uzawa.summary.outcome, Outcome::converged);
+  expect_same_fields(uzawa, exact, 1e-8);
+}
+
+TEST_P(RandomProblems, ActiveSetLeavesOnlyRounding) {
+  const Residuals residuals = solve(problems::random(GetParam()), {ActiveSet{}, {}}).summary.residuals;
+  EXPECT_LT(residuals.equilibrium, 1e-11);
+  EXPECT_LT(residuals.constitutive, 1e-11);
+  EXPECT_LT(residuals.penetration, 1e-11);
+  EXPECT_LT(residuals.tension, 1e-11);
+  EXPECT_LT(residuals.complementarity, 1e-11);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomProblems, testing::Range(1u, 11u));
+
+/// The random problems are of use only if contact is open in one place and closed in another.
+TEST(RandomProblemsThemselves, AreNotTrivial) {
+  int mixed = 0;
+  for (unsigned seed = 1; seed < 11; ++seed) {
+    const Solution solution = solve(problems::random(seed), {ActiveSet{}, {}});
+    double length = 0;
+    for (const ContactPart& part : solution.contact) length += vector(part.weight).sum();
+    mixed += solution.summary.contact.length > 0 && solution.summary.contact.length < 0.999 * length;
+  }
+  EXPECT_GE(mixed, 5);
+}
+
+TEST(PaperUzawaMethod, ItsFixedPointIsTheActiveSetSolution) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    const Problem problem = problems::paper(scheme, 8);
+    const Solution exact = solve(problem, {ActiveSet{}, {}});
+    const Solution uzawa = solve(problem, {PaperUzawa{0.1, 1, 0, 1e-14, 100000}, {}});
+    ASSERT_EQ(uzawa.summary.outcome, Outcome::converged);
+    expect_same_fields(uzawa, exact, 1e-9);
+  }
+}
+
+TEST(PaperUzawaMethod, DivergesWithoutAugmentationAndSaysSo) {
+  for (const int n : {4, 12}) {
+    const Solution solution =
+        solve(problems::paper(Scheme::conforming, n), {PaperUzawa{0.05, 0, 1, 1e-5, 100000}, {}});
+    EXPECT_EQ(solution.summary.outcome, Outcome::diverged);
+    EXPECT_NE(solution.summary.advice.find("rho"), std::string::npos);
+    EXPECT_TRUE(solution.stress.allFinite());
+    EXPECT_TRUE(solution.displacement.allFinite());
+    EXPECT_EQ(solution.summary.iterations, static_cast<int>(solution.history.size()));
+  }
+}
+
+TEST(PaperUzawaMethod, OverflowAtOnceIsAnErrorInWords) {
+  try {
+    const Solution solution =
+        solve(problems::paper(Scheme::conforming, 4), {PaperUzawa{1e308, 0, 1, 1e-5, 10}, {}});
+    EXPECT_EQ(solution.summary.outcome, Outcome::diverged);
+    EXPECT_TRUE(solution.displacement.allFinite());
+  } catch (const SolveError& error) {
+    EXPECT_NE(std::string(error.what()).find("double precision"), std::string::npos);
+  }
+}
+
+TEST(Limits, IterationLimitKeepsTheLastIterate) {
+  for (const Method& method : {Method{AcceleratedUzawa{1e-12, 3}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 3}}}) {
+    const Solution solution = solve(problems::paper(Scheme::conforming, 8), {method, {}});
+    EXPECT_EQ(solution.summary.outcome, Outcome::iteration_limit);
+    EXPECT_EQ(solution.history.size(), 3u);
+    EXPECT_FALSE(solution.summary.advice.empty());
+    EXPECT_TRUE(std::isfinite(solution.summary.energy));
+  }
+}
+
+TEST(Limits, TimeLimitBeforeAnyIterateIsAnError) {
+  EXPECT_THROW(solve(problems::paper(Scheme::conforming, 8), {ActiveSet{}, 1e-9}), SolveError);
+}
+
+TEST(Limits, TimeLimitKeepsTheLastIterate) {
+  const Solution solution =
+      solve(problems::paper(Scheme::conforming, 8), {PaperUzawa{1e-9, 1, 1, 1e-14, 1000000}, 0.05});
+  EXPECT_EQ(solution.summary.outcome, Outcome::time_limit);
+  EXPECT_GT(solution.summary.iterations, 0);
+}
+
+class Stopper : public Observer {
+ public:
+  explicit Stopper(int after) : after_(after) {}
+  void iterated(const Iteration&) override { ++seen_; }
+  bool keep_going() override { return seen_ < after_; }
+
+ private:
+  int after_, seen_ = 0;
+};
+
+TEST(Observers, CanStopEveryMethod) {
+  for (const Method& method :
+       {Method{AcceleratedUzawa{}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 1000}}, Method{ActiveSet{}}}) {
+    Stopper stopper(1);
+    EXPECT_THROW(solve(problems::paper(Scheme::conforming, 12), {method, {}}, stopper), Cancelled);
+  }
+  Stopper at_once(0);
+  EXPECT_THROW(solve(problems::paper(Scheme::conforming, 12), {}, at_once), Cancelled);
+}
+
+/// The paper's problem with lengths × a, stiffness × b, displacements × c: load × b c / a².
+Problem scaled(double a, double b, double c) {
+  Problem problem = problems::paper(Scheme::conforming, 12);
+  problem.domain = Rectangle{{0, 0}, {a, a}};
+  problem.material = MembraneStiffness::isotropic(Field(b));
+  const double load = 10 * b * c / (a * a);
+  problem.body = problems::function([=](const Point& x) { return x.x() < 0.5 * a ? load : -load; });
+  problem.boundary["bottom"] =
+      Contact{problems::function([=](const Point& x) { return c * 0.05 * x.x() / a; })};
+  return problem;
+}
+
+TEST(Units, ChangeNeitherCountsNorTheActiveSet) {
+  for (const Method& method : {Method{AcceleratedUzawa{}}, Method{ActiveSet{}}}) {
+    const Solution reference = solve(scaled(1, 1, 1), {method, {}});
+    for (const double a : {1e-9, 1., 1e9})
+      for (const double b : {1e-9, 1., 1e9})
+        for (const double c : {1e-9, 1., 1e9}) {
+          const Solution solution = solve(scaled(a, b, c), {method, {}});
+          EXPECT_EQ(solution.summary.outcome, Outcome::converged);
+          EXPECT_EQ(solution.summary.iterations, reference.summary.iterations) << a << ' ' << b << ' ' << c;
+          for (std::size_t part = 0; part < reference.contact.size(); ++part)
+            EXPECT_EQ(solution.contact[part].open, reference.contact[part].open) << a << ' ' << b << ' ' << c;
+          EXPECT_NEAR(solution.summary.energy / (b * c * c) / reference.summary.energy, 1, 1e-9);
+        }
+  }
+}
+
+TEST(Units, PaperFormScalesWithItsParameters) {
+  const Solution reference = solve(scaled(1, 1, 1), {PaperUzawa{0.05, 1, 0.3, 1e-5, 1000}, {}});
+  // With lengths fixed, ρ and r scale like 1 / modulus.
+  for (const double b : {1e-9, 1e9}) {
+    const Solution solution =
+        solve(scaled(1, b, 1e-9), {PaperUzawa{0.05 / b, 1 / b, 0.3e-9, 1e-5, 1000}, {}});
+    EXPECT_EQ(solution.summary.iterations, reference.summary.iterations);
+  }
+}
+
+}  // namespace
+}  // namespace signorini

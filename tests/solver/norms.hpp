@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cmath>
+
+#include "fem/lagrange.hpp"
+#include "fem/quadrature.hpp"
+#include "fem/scheme.hpp"
+#include "solution.hpp"
+
+namespace signorini {
+
+/// Integrates visit(t, map, reference point) over all triangles by the seven-point rule.
+template <typename Visit>
+double integrate(const Solution& solution, const Visit& visit) {
+  double sum = 0;
+  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
+    const AffineMap map(solution.mesh.corners(t));
+    for (int q = 0; q < TriangleRule::size; ++q)
+      sum += triangle_rule().weights[q] * map.determinant * visit(t, map, triangle_rule().points[q]);
+  }
+  return sum;
+}
+
+/// ‖σ − σ_h‖ in L2.
+template <typename Stress>
+double stress_error(const Solution& solution, const Stress& exact) {
+  const RaviartThomas& element = spaces_of(solution.scheme, solution.components).row;
+  return std::sqrt(integrate(solution, [&](int t, const AffineMap& map, const Point& x) {
+    return (element.values(map, x) * solution.stress.col(t) - exact(map(x))).squaredNorm();
+  }));
+}
+
+/// ‖u − u_h‖ in L2; ‖u_h‖ for u = 0.
+template <typename Displacement>
+double displacement_error(const Solution& solution, const Displacement& exact) {
+  const int order = spaces_of(solution.scheme, solution.components).order;
+  return std::sqrt(integrate(solution, [&](int t, const AffineMap& map, const Point& x) {
+    return std::pow(triangle_basis(order, x).dot(solution.displacement.col(t)) - exact(map(x)), 2);
+  }));
+}
+
+/// ‖λ − λ_h‖ in L2 of the contact boundary, by the rows' weights.
+template <typename Clearance>
+double clearance_error(const ContactPart& part, const Clearance& exact) {
+  double sum = 0;
+  for (std::size_t i = 0; i < part.points.size(); ++i)
+    sum += part.weight[i] * std::pow(part.clearance[i] - exact(part.points[i]), 2);
+  return std::sqrt(sum);
+}
+
+/// The slope of log(error) over log(h) by least squares, for meshes that halve h each time.
+inline double rate(const std::vector<double>& errors) {
+  const double n = static_cast<double>(errors.size());
+  double x = 0, y = 0, xx = 0, xy = 0;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const double level = -static_cast<double>(i), size = std::log2(errors[i]);
+    x += level, y += size, xx += level * level, xy += level * size;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace signorini

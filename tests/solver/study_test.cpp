@@ -1,0 +1,275 @@
+// Convergence studies: the table, the true errors in it and the rates observed.
+#include "study.hpp"
+
+#include <gtest/gtest.h>
+
+#include "norms.hpp"
+#include "problems/elasticity.hpp"
+
+namespace signorini {
+namespace {
+
+const Settings active_set{ActiveSet{}, std::nullopt};
+const std::vector<Scheme> both{Scheme::conforming, Scheme::nonconforming};
+
+std::vector<StudyMesh> squares(const std::vector<Divisions>& divisions) {
+  std::vector<StudyMesh> meshes;
+  for (const Divisions& each : divisions)
+    meshes.push_back({"/study/divisions/" + std::to_string(meshes.size()), MeshRequest(each)});
+  return meshes;
+}
+
+std::vector<StudyRow> run(const Problem& problem, const Study& study, const Settings& settings = active_set) {
+  Observer indifferent;
+  return run_study(problem, study, settings, indifferent, 0);
+}
+
+std::optional<double> bound_of(const StudyRow& row) {
+  return row.error_bound ? std::optional(row.error_bound->value) : std::nullopt;
+}
+
+Quantity error(std::optional<double> TrueErrors::*which) {
+  return [which](const StudyRow& row) { return row.errors.*which; };
+}
+
+Exact exact_edge() {
+  using Edge = problems::SignoriniEdge;
+  // J(u) = ½ ∫ 9/4 |x|, in closed form.
+  const double energy = 9. / 8 * 2 / 3 * (std::sqrt(2.) + std::asinh(1.));
+  return {VectorField(problems::function(Edge::u)),
+          {problems::function([](const Point& x) { return Edge::stress(x).x(); }),
+           problems::function([](const Point& x) { return Edge::stress(x).y(); })},
+          energy};
+}
+
+/// What Theorems 4.3 and 4.5 promise, 3/4 and 1/2, holds of the bound on the errors; more is seen.
+TEST(Study, ReproducesTheOrdersOfTheTheoremsOnThePapersProblem) {
+  Study study{both, squares({{4, 4}, {8, 8}, {16, 16}, {32, 32}, {64, 64}, {128, 128}}), {}};
+  study.exact.energy = -0.914792950798;
+  const std::vector<StudyRow> rows = run(problems::paper(Scheme::conforming, 4), study);
+  ASSERT_EQ(rows.size(), 12u);
+  for (const StudyRow& row : rows) {
+    ASSERT_EQ(row.error, "");
+    ASSERT_TRUE(row.error_bound && row.error_bound->guaranteed);
+    EXPECT_LE(row.error_bound->energy_lower, *study.exact.energy);
+    EXPECT_GE(row.error_bound->energy_upper, *study.exact.energy);
+  }
+  for (const auto& [scheme, promised, seen] :
+       {std::tuple(Scheme::conforming, 0.75, 1.4), std::tuple(Scheme::nonconforming, 0.5, 0.95)}) {
+    const double bound = fitted_rate(rows, scheme, bound_of).value();
+    const double energy = fitted_rate(rows, scheme, error(&TrueErrors::energy)).value();
+    std::printf("observed rates: bound %.3f, energy %.3f\n", bound, energy);
+    EXPECT_GE(bound, promised);
+    EXPECT_GE(bound, seen);
+    EXPECT_GE(energy, 2 * promised);
+  }
+}
+
+TEST(Study, PutsTheTrueErrorsBesideTheBound) {
+  const Study study{both, squares({{8, 4}, {16, 8}, {32, 16}, {64, 32}}), exact_edge()};
+  const std::vector<StudyRow> rows = run(problems::SignoriniEdge::problem(Scheme::conforming, 1), study);
+  ASSERT_EQ(rows.size(), 8u);
+  for (const StudyRow& row : rows) {
+    const TrueErrors& errors = row.errors;
+    EXPECT_EQ(errors.stress, errors.energy_norm);  // κ = 1
+    EXPECT_GT(*errors.total, *errors.energy_norm);
+    EXPECT_LE(*errors.total, row.error_bound->value * (1 + 1e-9));
+    EXPECT_GE(*errors.total, 0.5 * row.error_bound->value);
+  }
+  for (const auto& [scheme, order] :
+       {std::pair(Scheme::conforming, 1.4), std::pair(Scheme::nonconforming, 0.95)})
+    for (const auto which : {&TrueErrors::displacement, &TrueErrors::stress, &TrueErrors::total})
+      EXPECT_GE(fitted_rate(rows, scheme, error(which)).value(), order);
+
+  Problem alone = problems::SignoriniEdge::problem(Scheme::nonconforming, 32);
+  const Solution solution = solve(alone, active_set);
+  const StudyRow& last = rows.back();
+  EXPECT_EQ(last.scheme, Scheme::nonconforming);
+  EXPECT_EQ(last.level, 0);
+  EXPECT_EQ(last.triangles, solution.summary.triangles);
+  EXPECT_EQ(last.unknowns.stress, solution.summary.unknowns.stress);
+  EXPECT_EQ(last.energy, solution.summary.energy);
+  EXPECT_NEAR(last.size, std::sqrt(2.) / 32, 1e-15);
+  EXPECT_NEAR(*last.errors.stress, stress_error(solution, problems::SignoriniEdge::stress),
+              1e-3 * *last.errors.stress);
+  EXPECT_NEAR(*last.errors.displacement, displacement_error(solution, problems::SignoriniEdge::u),
+              1e-3 * *last.errors.displacement);
+}
+
+/// ½ E ε : ε by its two moduli.
+double elastic_energy_density(const problems::Smooth& smooth, const Point& x) {
+  const Eigen::Matrix2d strain = (smooth.gradient(x) + smooth.gradient(x).transpose()) / 2;
+  return smooth.mu * strain.squaredNorm() + smooth.lambda / 2 * std::pow(strain.trace(), 2);
+}
+
+TEST(Study, MeasuresElasticErrorsInTheNormOfTheLaw) {
+  for (const double poisson : {0.3, 0.4999}) {
+    const problems::Smooth smooth(poisson);
+    Study study{both, squares({{4, 4}, {8, 8}}), {}};
+    study.exact.displacement =
+        VectorField(problems::function([=](const Point& x) { return smooth.u(x).x(); }),
+                    problems::function([=](const Point& x) { return smooth.u(x).y(); }));
+    for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 1), std::pair(0, 1)})
+      study.exact.stress.push_back(
+          problems::function([=](const Point& x) { return smooth.stress(x)(i, j); }));
+    const std::vector<StudyRow> rows = run(smooth.problem(Scheme::conforming, 4), study);
+    for (const StudyRow& row : rows) {
+      ASSERT_EQ(row.error, "");
+      EXPECT_LE(*row.errors.energy_norm, row.error_bound->value);
+      // C ≤ 1/(2μ): the norm of the law is at most this much of that of L2.
+      EXPECT_LE(*row.errors.energy_norm, *row.errors.stress / std::sqrt(2 * smooth.mu) * (1 + 1e-12));
+      EXPECT_FALSE(row.errors.total);
+    }
+    EXPECT_GE(observed_rate(rows, 1, error(&TrueErrors::energy_norm)).value(), 1.5);
+    EXPECT_GE(observed_rate(rows, 3, error(&TrueErrors::energy_norm)).value(), 0.8);
+    EXPECT_LT(*rows[1].errors.displacement, 0.05);
+  }
+  // Against a stress of zero the norm is that of σ_h, √(2 · energy) of the exact solution but for its error.
+  const problems::Smooth smooth(0.3);
+  Study study{{Scheme::conforming}, squares({{16, 16}}), {}};
+  study.exact.stress.assign(3, Field(0));
+  const std::vector<StudyRow> rows = run(smooth.problem(Scheme::conforming, 4), study);
+  double energy = 0;
+  constexpr int n = 200;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      energy += elastic_energy_density(smooth, {(i + 0.5) / n, (j + 0.5) / n}) / (n * n);
+  EXPECT_NEAR(*rows[0].errors.energy_norm, std::sqrt(2 * energy), 2e-3 * std::sqrt(2 * energy));
+}
+
+TEST(Study, AMeshThatRefinesItselfHasARowALevel) {
+  Study study{both, {{"/study/adaptive", MeshRequest(Divisions{4, 2})}}, exact_edge()};
+  study.meshes[0].request.adaptive = Adaptive{0.05, 100'000};
+  const std::vector<StudyRow> rows = run(problems::SignoriniEdge::problem(Scheme::conforming, 1), study);
+  std::array<int, 2> levels{};
+  for (const StudyRow& row : rows) {
+    ASSERT_EQ(row.error, "");
+    int& level = levels[row.scheme == Scheme::nonconforming];
+    EXPECT_EQ(row.level, ++level);
+    EXPECT_LE(*row.errors.total, row.error_bound->value * (1 + 1e-9));
+    if (row.level == 1) continue;
+    EXPECT_GT(row.triangles, (&row - 1)->triangles);
+    EXPECT_GT(row.seconds, (&row - 1)->seconds);
+  }
+  EXPECT_GE(levels[0], 2);
+  EXPECT_GE(levels[1], 4);
+  EXPECT_LE(rows.back().error_bound->relative, 0.05);
+  EXPECT_GE(fitted_rate(rows, Scheme::nonconforming, bound_of).value(), 0.9);
+}
+
+TEST(Study, KeepsTheLevelsOfAToleranceThatIsNotMet) {
+  Study study{{Scheme::nonconforming}, {{"/study/adaptive", MeshRequest(Divisions{4, 4})}}, {}};
+  study.meshes[0].request.adaptive = Adaptive{1e-4, 200};
+  const std::vector<StudyRow> rows = run(problems::paper(Scheme::conforming, 4), study);
+  ASSERT_GE(rows.size(), 3u);
+  EXPECT_EQ(rows[rows.size() - 2].error, "");
+  EXPECT_NE(rows.back().error.find("/study/adaptive: "), std::string::npos);
+  EXPECT_NE(rows.back().error.find("max_triangles"), std::string::npos);
+  EXPECT_EQ(rows.back().triangles, 0);
+}
+
+TEST(Study, ARunThatFailsDoesNotEndTheOthers) {
+  const Study study{{Scheme::nonconforming}, squares({{4, 4}, {32, 32}, {4, 4}}), {}};
+  // Enough for the coarse mesh only.
+  const std::vector<StudyRow> rows =
+      run(problems::paper(Scheme::conforming, 4), study, {AcceleratedUzawa{1e-8, 12}, {}});
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].error, "");
+  EXPECT_EQ(rows[1].error.find("/study/divisions/1: "), 0u) << rows[1].error;
+  EXPECT_EQ(rows[2].error, "");
+  EXPECT_FALSE(observed_rate(rows, 1, bound_of));
+}
+
+TEST(Study, TheTimeLimitIsForTheWhole) {
+  const Study study{{Scheme::nonconforming}, squares({{4, 4}, {4, 4}}), {}};
+  Observer indifferent;
+  const std::vector<StudyRow> rows =
+      run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, 5.}, indifferent, 6);
+  ASSERT_EQ(rows.size(), 2u);
+  for (const StudyRow& row : rows) EXPECT_NE(row.error.find("time limit"), std::string::npos);
+}
+
+TEST(Study, CountsItsRunsAndEndsWhenItIsAskedTo) {
+  struct Counting : Observer {
+    std::size_t done = 0, count = 0;
+    bool keep_going() override { return done < 2; }
+    void studied(std::size_t now, std::size_t all) override { done = now, count = all; }
+  } counting;
+  const Study study{both, squares({{4, 4}, {8, 8}}), {}};
+  EXPECT_THROW(run_study(problems::paper(Scheme::conforming, 4), study, active_set, counting, 0), Cancelled);
+  EXPECT_EQ(counting.done, 2u);
+  EXPECT_EQ(counting.count, 4u);
+}
+
+TEST(Study, IsEstimatedUntilThereAreEnoughUnknowns) {
+  const Study study{both, squares({{4, 4}, {8, 8}}), {}};
+  const Problem problem = problems::paper(Scheme::conforming, 4);
+  const std::vector<Estimate> all = estimate(problem, study);
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[3].triangles, 128);
+  EXPECT_EQ(all[3].unknowns.stress, 208);
+  const std::int64_t first_two = all[0].unknowns.stress + all[1].unknowns.stress;
+  EXPECT_EQ(estimate(problem, study, first_two).size(), 3u);
+  EXPECT_EQ(estimate(problem, study, first_two - 1).size(), 2u);
+}
+
+TEST(Study, TellsWhatIsWrongWithIt) {
+  Study study{both, squares({{4, 4}, {0, 4}}), {}};
+  study.meshes.push_back({"/study/adaptive", MeshRequest(Divisions{4, 4})});
+  study.meshes.back().request.adaptive = Adaptive{0.1, 100};
+  const Problem problem = problems::paper(Scheme::conforming, 4);
+  const std::vector<Fault> faults = validate(problem, study, {PaperUzawa{0.1, 1}, {}});
+  ASSERT_EQ(faults.size(), 2u);
+  EXPECT_EQ(faults[0].where, "/study/divisions/1");
+  EXPECT_EQ(faults[1].where, "/study/adaptive");
+
+  Study infinite{both, squares({{4, 4}}), {}};
+  infinite.exact.displacement = VectorField(
+      problems::function([](const Point& x) { return 1 / (x.x() - x.x()); }, "/study/exact/displacement"));
+  infinite.exact.stress = {
+      Field(1), problems::function([](const Point&) { return std::nan(""); }, "/study/exact/stress/1")};
+  const std::vector<Fault> values = validate(problem, infinite, active_set);
+  ASSERT_EQ(values.size(), 2u);
+  EXPECT_EQ(values[0].where, "/study/exact/displacement");
+  EXPECT_EQ(values[1].where, "/study/exact/stress/1");
+}
+
+std::vector<StudyRow> made_up(Scheme scheme, const std::vector<std::pair<int, double>>& values) {
+  std::vector<StudyRow> rows;
+  for (const auto& [triangles, value] : values) {
+    StudyRow row;
+    row.scheme = scheme;
+    row.triangles = triangles;
+    row.errors.stress = value;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST(StudyRates, AreExponentsOfTheEdgeLength) {
+  const Quantity stress = error(&TrueErrors::stress);
+  std::vector<StudyRow> rows = made_up(Scheme::conforming, {{8, 4}, {32, 1}, {128, 0.5}});
+  EXPECT_FALSE(observed_rate(rows, 0, stress));
+  EXPECT_NEAR(observed_rate(rows, 1, stress).value(), 2, 1e-14);
+  EXPECT_NEAR(observed_rate(rows, 2, stress).value(), 1, 1e-14);
+  EXPECT_NEAR(fitted_rate(rows, Scheme::conforming, stress).value(), 1.5, 1e-14);
+  EXPECT_FALSE(fitted_rate(rows, Scheme::nonconforming, stress));
+
+  // Over a failed row and over a zero they reach back to the last number, never to another scheme.
+  rows[1].error = "no";
+  EXPECT_FALSE(observed_rate(rows, 1, stress));
+  EXPECT_NEAR(observed_rate(rows, 2, stress).value(), 1.5, 1e-14);
+  rows[1].error.clear();
+  rows[1].errors.stress = 0;
+  EXPECT_FALSE(observed_rate(rows, 1, stress));
+  EXPECT_NEAR(observed_rate(rows, 2, stress).value(), 1.5, 1e-14);
+  rows[2].scheme = Scheme::nonconforming;
+  EXPECT_FALSE(observed_rate(rows, 2, stress));
+  EXPECT_FALSE(fitted_rate(rows, Scheme::nonconforming, stress));
+
+  EXPECT_FALSE(observed_rate(made_up(Scheme::conforming, {{8, 2}, {8, 1}}), 1, stress));
+  EXPECT_FALSE(fitted_rate(made_up(Scheme::conforming, {{8, 2}, {8, 1}}), Scheme::conforming, stress));
+}
+
+}  // namespace
+}  // namespace signorini

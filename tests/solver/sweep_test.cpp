@@ -1,0 +1,234 @@
+// The entries of a sweep are the answers of single solves.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "problems/families.hpp"
+
+namespace signorini {
+namespace {
+
+Variation data_of(const Problem& problem, std::string load_key) {
+  return {"", problem.body, problem.boundary, std::move(load_key)};
+}
+
+Solution solve_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
+                     Observer& observer) {
+  problems::Shelf shelf;
+  return solve(problem, sweep, settings, observer, shelf);
+}
+
+Solution solve_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings) {
+  Observer indifferent;
+  return solve_sweep(problem, sweep, settings, indifferent);
+}
+
+double largest(const std::vector<double>& numbers) {
+  double size = 0;
+  for (const double number : numbers) size = std::max(size, std::abs(number));
+  return size;
+}
+
+/// Numbers that may be far apart by `tolerance` times their largest, or times the scale if that is larger.
+void expect_near(const std::vector<double>& found, const std::vector<double>& expected, double tolerance,
+                 double scale) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    ASSERT_NEAR(found[i], expected[i], tolerance * std::max(largest(expected), scale)) << i;
+}
+
+void expect_entry(const SweepEntry& entry, const Solution& expected, double tolerance) {
+  ASSERT_EQ(entry.error, "");
+  EXPECT_EQ(entry.outcome, expected.summary.outcome);
+  EXPECT_NEAR(entry.energy, expected.summary.energy, tolerance * std::abs(expected.summary.energy));
+  EXPECT_LT(std::max({entry.penetration, entry.tension, entry.complementarity}), 1e-8);
+  double force = 0;
+  for (const Reaction& reaction : expected.summary.parts)
+    force = std::max({force, largest(reaction.force), std::abs(reaction.moment)});
+  ASSERT_EQ(entry.parts.size(), expected.summary.parts.size());
+  for (std::size_t i = 0; i < entry.parts.size(); ++i) {
+    EXPECT_EQ(entry.parts[i].part, expected.summary.parts[i].part);
+    expect_near(entry.parts[i].force, expected.summary.parts[i].force, tolerance, force);
+    EXPECT_NEAR(entry.parts[i].moment, expected.summary.parts[i].moment, tolerance * force);
+  }
+  EXPECT_NEAR(entry.sums.force, expected.summary.contact.force, tolerance * force);
+  EXPECT_NEAR(entry.sums.max_pressure, expected.summary.contact.max_pressure, tolerance * force);
+  ASSERT_EQ(entry.contact.size(), expected.contact.size());
+  for (std::size_t i = 0; i < entry.contact.size(); ++i) {
+    const ContactPart &found = entry.contact[i], &part = expected.contact[i];
+    EXPECT_EQ(found.points, part.points);
+    EXPECT_EQ(found.gap, part.gap);
+    expect_near(found.clearance, part.clearance, tolerance, 0);
+    expect_near(found.pressure, part.pressure, tolerance, force);
+  }
+}
+
+/// Constant, linear and curved gaps, and every third time other loads.
+std::vector<Problem> variations_of(const Problem& family) {
+  std::vector<Problem> variations;
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<> number(0, 0.1);
+  for (unsigned i = 0; i < 9; ++i) {
+    Problem problem = problems::with_other_data(family, i / 3);
+    problem.load_key = std::to_string(i / 3);
+    for (auto& [part, condition] : problem.boundary)
+      if (auto* contact = std::get_if<Contact>(&condition)) {
+        const double a = number(engine), b = number(engine);
+        if (i % 3 == 0) contact->gap = a + 0.1;
+        if (i % 3 == 1)
+          contact->gap = problems::function([=](const Point& x) { return a + 0.1 + b * x.x() - a * x.y(); });
+        if (i % 3 == 2) contact->gap = problems::wave(engine, 0.2, 0.1);
+      }
+    variations.push_back(problem);
+  }
+  return variations;
+}
+
+TEST(Sweep, EntriesAreSingleSolves) {
+  for (Problem family : problems::families()) {
+    family = problems::with_other_data(family, 17);
+    family.operator_key = "family";
+    const std::vector<Problem> single = variations_of(family);
+    std::vector<Variation> sweep;
+    for (const Problem& problem : single) sweep.push_back(data_of(problem, problem.load_key));
+    const Solution solution = solve_sweep(family, sweep, {ActiveSet{}, {}});
+    ASSERT_EQ(solution.sweep.size(), single.size());
+    for (std::size_t i = 0; i < single.size(); ++i)
+      expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-10);
+    EXPECT_EQ(solution.summary.energy, solve(family, {ActiveSet{}, {}}).summary.energy);
+  }
+}
+
+/// A fixed side ends where the contact begins, without a gap there: the node bears the support's force.
+TEST(Sweep, KnowsTheForceOnNodesThatAreHeld) {
+  Problem membrane = problems::paper(Scheme::conforming, 8);
+  membrane.body = Field(-10);
+  Problem elastic = problems::elastic(Scheme::conforming, 0.3);
+  elastic.body = VectorField(0, -2);
+  elastic.boundary = {{"left", Fixed{}}, {"bottom", Contact{0, Vector(0.3, -1)}}};
+  for (Problem& family : std::array{membrane, elastic}) {
+    std::vector<Problem> single(4, family);
+    std::vector<Variation> sweep;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      const double slope = 0.01 * static_cast<double>(i);
+      std::get<Contact>(single[i].boundary["bottom"]).gap =
+          problems::function([=](const Point& x) { return slope * x.x(); });
+      sweep.push_back(data_of(single[i], "loads"));
+    }
+    const Solution solution = solve_sweep(family, sweep, {ActiveSet{}, {}});
+    for (std::size_t i = 0; i < single.size(); ++i) {
+      const Solution expected = solve(single[i], {ActiveSet{}, {}});
+      EXPECT_GT(std::abs(expected.contact[0].pressure[0]), 0.1);
+      expect_entry(solution.sweep[i], expected, 1e-10);
+    }
+  }
+}
+
+/// How often a sweep over the gaps evaluates the body load, which new gaps do not ask for.
+std::size_t loads_evaluated(Scheme scheme, const std::vector<Field>& gaps) {
+  std::size_t evaluated = 0;
+  Problem problem = problems::paper(scheme, 6);
+  problem.body = problems::function([&](const Point&) { return ++evaluated, -10.; });
+  problem.load_key = "loads";
+  std::vector<Variation> sweep;
+  for (const Field& gap : gaps) {
+    problem.boundary["bottom"] = Contact{gap};
+    sweep.push_back(data_of(problem, "loads"));
+  }
+  solve_sweep(problem, sweep, {ActiveSet{}, {}});
+  return evaluated;
+}
+
+TEST(Sweep, NewGapsCostNoPassOverTheTriangles) {
+  const Field linear = problems::function([](const Point& x) { return 0.3 * x.x(); });
+  const Field curved = problems::function([](const Point& x) { return std::exp(x.x()); });
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    const std::size_t once = loads_evaluated(scheme, {0.1});
+    EXPECT_EQ(loads_evaluated(scheme, {0.1, 0.2, linear, 3., linear}), once);
+    // The clearance of the conforming scheme is linear on an edge.
+    EXPECT_EQ(loads_evaluated(scheme, {0.1, curved}) > once, scheme == Scheme::conforming);
+  }
+}
+
+TEST(Sweep, EveryMethodMaySweep) {
+  const Problem family = problems::paper(Scheme::conforming, 8);
+  std::vector<Variation> sweep;
+  std::vector<Problem> single;
+  for (const double gap : {0., 0.05, 0.2, 3.}) {
+    Problem problem = family;
+    problem.boundary["bottom"] = Contact{gap};
+    single.push_back(problem);
+    sweep.push_back(data_of(problem, "loads"));
+  }
+  for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{1e-12, 100000}},
+                               Method{PaperUzawa{0.1, 1, 0, 1e-13, 100000}}}) {
+    const Solution solution = solve_sweep(family, sweep, {method, {}});
+    for (std::size_t i = 0; i < single.size(); ++i)
+      expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-7);
+  }
+}
+
+TEST(Sweep, AnEntryWithoutSolutionSaysWhyAndTheOthersGoOn) {
+  Problem resting = problems::paper(Scheme::nonconforming, 6);
+  resting.boundary = {{"bottom", Contact{}}};
+  resting.body = Field(-1);
+  std::vector<Variation> sweep(3, data_of(resting, "down"));
+  sweep[1].body = Field(1);
+  sweep[1].load_key = "up";
+  const Solution solution = solve_sweep(resting, sweep, {ActiveSet{}, {}});
+  EXPECT_EQ(solution.sweep[0].error, "");
+  EXPECT_NE(solution.sweep[1].error.find("lifts it off"), std::string::npos);
+  EXPECT_EQ(solution.sweep[2].error, "");
+  EXPECT_NEAR(solution.sweep[2].sums.force, 1, 1e-11);
+}
+
+TEST(Sweep, RefusesEveryBadVariationAtOnce) {
+  Problem problem = problems::paper(Scheme::conforming, 6);
+  std::vector<Variation> sweep(4, data_of(problem, "loads"));
+  sweep[1].boundary["top"] =
+      Contact{Field([](const Point&, const Vector&) { return NAN; }, "/sweep/1/boundary/top/gap")};
+  sweep[3].boundary["bottom"] = Contact{-1};
+  try {
+    solve_sweep(problem, sweep, {});
+    FAIL();
+  } catch (const InvalidProblem& invalid) {
+    ASSERT_EQ(invalid.faults().size(), 2u);
+    EXPECT_EQ(invalid.faults()[0].where, "/sweep/1/boundary/top/gap");
+    EXPECT_EQ(invalid.faults()[1].where, "/sweep/3/boundary/bottom/gap");
+  }
+}
+
+/// Ends the job after so many entries.
+class StopsAfter : public Observer {
+ public:
+  explicit StopsAfter(std::size_t entries) : entries_(entries) {}
+  void swept(std::size_t done, std::size_t count) override {
+    done_ = done;
+    EXPECT_EQ(count, 5u);
+  }
+  bool keep_going() override { return done_ < entries_; }
+  std::size_t done() const { return done_; }
+
+ private:
+  std::size_t entries_, done_ = 0;
+};
+
+TEST(Sweep, CanBeCancelledBetweenEntries) {
+  const Problem problem = problems::paper(Scheme::nonconforming, 6);
+  const std::vector<Variation> sweep(5, data_of(problem, "loads"));
+  StopsAfter stopper(3);
+  EXPECT_THROW(solve_sweep(problem, sweep, {}, stopper), Cancelled);
+  EXPECT_EQ(stopper.done(), 3u);
+}
+
+TEST(Sweep, TheTimeLimitIsForTheWhole) {
+  const Problem problem = problems::paper(Scheme::nonconforming, 24);
+  const std::vector<Variation> sweep(3000, data_of(problem, ""));
+  const Solution solution = solve_sweep(problem, sweep, {ActiveSet{}, 0.3});
+  EXPECT_EQ(solution.sweep.size(), sweep.size());
+  EXPECT_EQ(solution.sweep.front().error, "");
+  EXPECT_NE(solution.sweep.back().error.find("the time limit of 0.3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace signorini
