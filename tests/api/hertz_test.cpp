@@ -36,11 +36,13 @@ TEST(Hertz, HalfDiscAgainstIndependentValues) {
   EXPECT_NEAR(summary.contact.length / 2, 0.078008, 0.01 * 0.078008 + kEdge);
 }
 
-/// Hertz's pressure (2 F / π a) √(1 − (x/a)²) has a² = 4 ∫ p x² / F, and a² = 4 F R (1 − ν²) / (π E).
+/// Hertz's pressure (2 F / π a) √(1 − (x/a)²) has a² = 4 ∫ p x² / F, and a² = 4 F R (1 − ν²) / (π E). He takes
+/// the body for a half-plane, which leaves out terms of the order (a/R)²; R is 1 here. The mesh is generated
+/// and may differ from machine to machine, so the tolerances scale with the edges, too.
 TEST(Hertz, ThePressureTendsToHertzAsTheOverlapFalls) {
+  constexpr double edge = kEdge / 2;
   Request request = half_disc();
-  request.problem.mesh.sizes[0].size = kEdge / 2;
-  double last = 0.012;
+  request.problem.mesh.sizes[0].size = edge;
   for (const double delta : {0.02, 0.01, 0.005}) {
     std::get<Contact>(request.problem.boundary.at("contact")).gap =
         Field([=](const Point& x, const Vector&) { return x.y() - delta; }, "/test");
@@ -48,15 +50,13 @@ TEST(Hertz, ThePressureTendsToHertzAsTheOverlapFalls) {
     const double force = solution.summary.contact.force;
     const double half_width = std::sqrt(4 * force * (1 - 0.09) / (std::numbers::pi * 200));
     const double peak = 2 * force / (std::numbers::pi * half_width);
-    EXPECT_NEAR(solution.summary.contact.max_pressure / peak, 1, 0.04);
-    EXPECT_NEAR(solution.summary.contact.length / 2, half_width, kEdge);
+    EXPECT_NEAR(solution.summary.contact.max_pressure / peak, 1, 0.02 + edge / half_width);
+    EXPECT_NEAR(solution.summary.contact.length / 2, half_width, 2 * edge);
     const ContactPart& part = solution.contact[0];
     double moment = 0;
     for (std::size_t i = 0; i < part.points.size(); ++i)
       moment += part.weight[i] * part.pressure[i] * std::pow(part.points[i].x(), 2);
-    const double excess = std::abs(2 * std::sqrt(moment / force) / half_width - 1);
-    EXPECT_LT(excess, last / 2);
-    last = excess;
+    EXPECT_NEAR(2 * std::sqrt(moment / force) / half_width, 1, 0.75 * half_width * half_width) << delta;
   }
 }
 
