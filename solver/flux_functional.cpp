@@ -1,5 +1,6 @@
 #include "flux_functional.hpp"
 
+#include "fem/couple.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
@@ -17,7 +18,7 @@ int triangle_at(const Discretization& problem, int edge) {
 }  // namespace
 
 double FluxFunctional::operator()(const Discretization& problem, const Eigen::MatrixXd& stress) const {
-  double sum = 0;
+  double sum = constant;
   for (const auto& [edge, weights] : edges) {
     const int t = triangle_at(problem, edge);
     sum += weights.dot(stress.col(t).segment(first_flux(problem, t, edge), weights.size()));
@@ -28,6 +29,7 @@ double FluxFunctional::operator()(const Discretization& problem, const Eigen::Ma
 std::vector<FluxFunctional> reactions_on(const Discretization& problem, const BoundaryPart& part) {
   const int d = problem.spaces().components, order = problem.spaces().order;
   std::vector<FluxFunctional> reactions(d == 1 ? 1 : 3);
+  const TractionField traction(problem.problem, problem.mesh);
   for (const int edge : part.edges) {
     const int t = triangle_at(problem, edge), e = problem.mesh.local_edge(t, edge);
     const auto corners = problem.mesh.corners(t);
@@ -41,6 +43,8 @@ std::vector<FluxFunctional> reactions_on(const Discretization& problem, const Bo
     }
     for (int c = 0; c < d; ++c) reactions[c].edges.push_back({edge, force[c]});
     if (d == 2) reactions[2].edges.push_back({edge, moment});
+    if (problem.spaces().leaves_couples() && traction.acts_on(edge))
+      reactions[2].constant += couple_of_traction(traction, problem.mesh, edge);
   }
   return reactions;
 }

@@ -6,19 +6,22 @@
 
 namespace signorini {
 
-/// A sum over boundary edges of weights times the outward fluxes of an edge, in x and y components.
+/// A constant and a sum over boundary edges of weights times the outward fluxes of an edge, in x and y
+/// components.
 struct FluxFunctional {
   struct Edge {
     int edge;
     LocalVector weights;
   };
+  double constant = 0;
   std::vector<Edge> edges;
 
   double operator()(const Discretization& problem, const Eigen::MatrixXd& stress) const;
 };
 
 /// ∫ σn ds over a part, by components, and for an elastic body its moment ∫ x × σn ds about the origin; exact
-/// for the traces of σ_h: the fluxes are its moments against the basis of the edge, in which x is linear.
+/// for the traces of σ_h: the fluxes are its moments against the basis of the edge, in which x is linear; where
+/// that leaves couples, those of the given traction are added.
 std::vector<FluxFunctional> reactions_on(const Discretization& problem, const BoundaryPart& part);
 
 /// <−σ_n, φ_i> for a row of the clearance space.

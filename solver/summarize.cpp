@@ -84,12 +84,12 @@ double work_of_traction(const Discretization& problem, const Solution& solution,
   double sum = 0;
   for (int j = first; j < first + n; ++j) {
     const int dof = problem.traces.dof(t, j);
-    if (problem.traces.is_free(dof)) sum += problem.traces.traction()[problem.traces[dof].unknown] * trace[j];
+    if (problem.traces.is_free(dof)) sum += problem.coupling_load[problem.traces[dof].unknown] * trace[j];
   }
   return sum;
 }
 
-/// ½(Cσ,σ) − (f,u) − <t,u>.
+/// ½(Cσ,σ) − (f,u) − <t,u>, where u turns with the rotation if the spaces leave it the couples.
 double energy(const Discretization& problem, const Solution& solution) {
   double sum = 0;
   PerShape<LocalMatrix> compliances(problem);
@@ -102,6 +102,8 @@ double energy(const Discretization& problem, const Solution& solution) {
   }
   for (const BoundaryPart& part : problem.mesh.boundary)
     for (const int edge : part.edges) sum -= work_of_traction(problem, solution, edge);
+  for (int point = 0; point < solution.rotation.size(); ++point)
+    sum -= problem.coupling_load[problem.traces.rotation_at(point)] * solution.rotation[point];
   return sum;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "certify/local_fields.hpp"
+#include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
 
@@ -58,7 +59,9 @@ EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixX
     : problem_(problem), tractions_(problem.mesh.edges.size()) {
   take_from(stress);
   change_pressure(pressure);
-  balance_moments(stress);
+  Eigen::Matrix3Xd moments = asymmetry(problem, stress);
+  if (problem.spaces().leaves_couples()) take_couples(moments);
+  balance(moments);
 }
 
 Eigen::Matrix2d EdgeTractions::on(int t, int e) const {
@@ -81,16 +84,33 @@ void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
   }
 }
 
-/// The flux of the potential around each point balances the asymmetry of every triangle there.
-void EdgeTractions::balance_moments(const Eigen::MatrixXd& stress) {
-  const Eigen::Matrix3Xd moments = asymmetry(problem_, stress);
+/// The linear part of the traction that turns an edge, and the couples as the rotation took them.
+void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
+  const Mesh& mesh = problem_.mesh;
+  for (int t = 0; t < problem_.triangles(); ++t) moments.col(t).array() -= problem_.couples[t] / 3;
+  const TractionField traction(problem_.problem, mesh);
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    const double couple = couple_of_traction(traction, mesh, edge);
+    const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
+    const int from = (e + 1) % 3, to = (e + 2) % 3;
+    const auto corners = mesh.corners(t);
+    const Vector turning = traction_with_couple(couple, corners[to] - corners[from]);
+    at(edge).col(0) -= turning;
+    at(edge).col(1) += turning;
+    for (const int z : {from, to}) moments(z, t) -= couple / 2;
+  }
+}
+
+/// The flux of the potential around each point balances the moments of every triangle there.
+void EdgeTractions::balance(const Eigen::Matrix3Xd& moments) {
   const auto triangles = triangles_at_points(problem_.mesh);
   for (int point = 0; point < static_cast<int>(triangles.size()); ++point)
     turn_around(point, triangles[point], moments);
 }
 
 void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
-                                const Eigen::Matrix3Xd& asymmetry) {
+                                const Eigen::Matrix3Xd& moments) {
   if (triangles.empty()) return;
   const Mesh& mesh = problem_.mesh;
   int start = triangles[0];
@@ -103,7 +123,7 @@ void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
   double flux = 0;
   for (int t = start; t >= 0 && edges.size() < triangles.size();
        t = other_side(mesh, exit(mesh, t, point), t)) {
-    flux += asymmetry(corner_number(mesh, t, point), t);
+    flux += moments(corner_number(mesh, t, point), t);
     edges.push_back(exit(mesh, t, point));
     from.push_back(t);
     fluxes.push_back(flux);

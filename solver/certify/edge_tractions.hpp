@@ -13,9 +13,9 @@ namespace signorini {
 ///
 /// They are those of σ_h and two changes, each the derivative along the edges of a vector potential and so
 /// free of force: the one that turns the pressure into p* (an Airy function near Γ_C), and one that spreads
-/// the asymmetry. as(σ_h) is orthogonal to every hat function φ_z, therefore normal bubbles on the edges
-/// around z exist whose fluxes balance ∫ φ_z as(σ_h) in each triangle at z (the flux equilibration of Braess
-/// and Schöberl 2008, applied to the rotation).
+/// the asymmetry. as(σ_h) and the couples of the loads are orthogonal to every hat function φ_z, therefore
+/// normal bubbles on the edges around z exist whose fluxes balance them in each triangle at z (the flux
+/// equilibration of Braess and Schöberl 2008, applied to the rotation).
 class EdgeTractions {
  public:
   EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
@@ -31,8 +31,9 @@ class EdgeTractions {
   Eigen::Matrix2d& at(int edge) { return tractions_[edge]; }
   void take_from(const Eigen::MatrixXd& stress);
   void change_pressure(const ContactPressure& pressure);
-  void balance_moments(const Eigen::MatrixXd& stress);
-  void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& asymmetry);
+  void take_couples(Eigen::Matrix3Xd& moments);
+  void balance(const Eigen::Matrix3Xd& moments);
+  void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& moments);
 
   const Discretization& problem_;
   /// Of each edge, seen from its first triangle, at the ends in the direction in which that triangle lies on

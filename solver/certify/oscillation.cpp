@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
@@ -37,34 +38,16 @@ template <int D>
 Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t) {
   const Eigen::VectorXd moments = problem.load.col(t);
   const double area = AffineMap(problem.mesh.corners(t)).determinant / 2;
-  if (problem.spaces().order == 0) return (moments / area).replicate(1, 3);
+  if (problem.spaces().order == 0) {
+    const Eigen::Matrix<double, D, 3> mean = (moments / area).replicate(1, 3);
+    if constexpr (D == 2)
+      return mean + load_with_couple(problem.couples[t], problem.mesh.corners(t));
+    else
+      return mean;
+  }
   // The inverse of the mass matrix area/12 (1 + δ_ij) is 12/area (δ_ij − 1/4).
   const Eigen::Matrix<double, D, 3> own = moments.reshaped(D, 3);
   return 12 / area * (own.colwise() - own.rowwise().sum() / 4);
-}
-
-template <int D>
-TractionField<D>::TractionField(const Discretization& problem)
-    : mesh_(problem.mesh), condition_(problem.mesh.edges.size(), nullptr) {
-  for (const BoundaryPart& part : mesh_.boundary) {
-    const auto found = problem.problem.boundary.find(part.name);
-    if (found == problem.problem.boundary.end()) continue;
-    if (std::holds_alternative<Traction>(found->second) || std::holds_alternative<Pressure>(found->second))
-      for (const int edge : part.edges) condition_[edge] = &found->second;
-  }
-}
-
-template <int D>
-Components<D> TractionField<D>::operator()(int edge, double s) const {
-  const auto& [a, b] = mesh_.edges[edge];
-  const Point x = mesh_.points[a] + s * (mesh_.points[b] - mesh_.points[a]);
-  const Vector normal = mesh_.outward_normal(edge);
-  const auto* traction = std::get_if<Traction>(condition_[edge]);
-  Components<D> value;
-  for (int c = 0; c < D; ++c)
-    value[c] = traction ? traction->value(c, x, normal)
-                        : -std::get<Pressure>(*condition_[edge]).value(x, normal) * normal[c];
-  return value;
 }
 
 template <int D>
@@ -110,18 +93,17 @@ double Oscillation<D>::of_load(int t) const {
 template <int D>
 double Oscillation<D>::of_traction(int edge) const {
   const int order = problem_.spaces().order;
-  std::array<Components<D>, EdgeRule::size> t;
-  LocalMatrix moments = LocalMatrix::Zero(D, order + 1);
-  for (int q = 0; q < EdgeRule::size; ++q) {
-    const double s = edge_rule().points[q];
-    t[q] = traction_(edge, s);
-    moments += edge_rule().weights[q] * t[q] * edge_basis(order, s).transpose();
-  }
+  const auto& [a, b] = problem_.mesh.edges[edge];
+  const Vector turning = problem_.spaces().leaves_couples()
+                             ? traction_with_couple(couple_of_traction(traction_, problem_.mesh, edge),
+                                                    problem_.mesh.points[b] - problem_.mesh.points[a])
+                             : Vector(Vector::Zero());
   double square = 0;
   for (int c = 0; c < D; ++c) {
-    const LocalVector projection = project_onto_edge(order, moments.row(c).transpose());
+    const auto t = [&](double s) { return traction_(edge, c, s) - (2 * s - 1) * turning[c]; };
+    const LocalVector projection = project_onto_edge(order, edge_moments(order, t));
     for (int q = 0; q < EdgeRule::size; ++q) {
-      const double rest = t[q][c] - projection.dot(edge_basis(order, edge_rule().points[q]));
+      const double s = edge_rule().points[q], rest = t(s) - projection.dot(edge_basis(order, s));
       square += edge_rule().weights[q] * rest * rest;
     }
   }
@@ -129,8 +111,6 @@ double Oscillation<D>::of_traction(int edge) const {
 }
 
 template Eigen::Matrix<double, 2, 3> discrete_load<2>(const Discretization&, int);
-template class TractionField<1>;
-template class TractionField<2>;
 template class Oscillation<1>;
 template class Oscillation<2>;
 

@@ -2,27 +2,14 @@
 
 #include "certify/tensor.hpp"
 #include "fem/discretization.hpp"
+#include "fem/traction_field.hpp"
 
 namespace signorini {
 
-/// Column z: Πf at corner z of a triangle, the load that σ_h is in equilibrium with: the projection onto P_k.
+/// Column z: Πf at corner z of a triangle, the load that σ_h is in equilibrium with: the projection onto P_k,
+/// and where that has no rotations the linear load with the couple of f besides.
 template <int D>
 Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t);
-
-/// The traction t on every edge of Γ_F.
-template <int D>
-class TractionField {
- public:
-  explicit TractionField(const Discretization& problem);
-
-  bool acts_on(int edge) const { return condition_[edge]; }
-  /// At s ∈ [0, 1] from the first to the second point of an edge on which it acts.
-  Eigen::Matrix<double, D, 1> operator()(int edge, double s) const;
-
- private:
-  const Mesh& mesh_;
-  std::vector<const Condition*> condition_;  ///< of each edge, null where there is no traction
-};
 
 /// What the discrete equilibrium leaves out of the load, in the energy norm: a bound of
 ///
@@ -34,7 +21,8 @@ class TractionField {
 template <int D>
 class Oscillation {
  public:
-  explicit Oscillation(const Discretization& problem) : problem_(problem), traction_(problem) {}
+  explicit Oscillation(const Discretization& problem)
+      : problem_(problem), traction_(problem.problem, problem.mesh) {}
 
   double operator()(int t, LawField<D>& law) const;
 
@@ -43,7 +31,7 @@ class Oscillation {
   double of_traction(int edge) const;
 
   const Discretization& problem_;
-  TractionField<D> traction_;
+  TractionField traction_;
 };
 
 }  // namespace signorini

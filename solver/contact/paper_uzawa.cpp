@@ -105,7 +105,7 @@ void UzawaIteration::start() {
 
 void UzawaIteration::solve_first_equation() {
   const int n = problem_.traces.dofs_per_triangle(), free = problem_.traces.free_unknowns();
-  right_ = problem_.traces.traction().head(free);
+  right_ = problem_.coupling_load.head(free);
   x_.head(free).setZero();
   x_.tail(clearance_.size()) = clearance_;
   for (int t = 0; t < problem_.triangles(); ++t) {

@@ -31,6 +31,8 @@ class Balance {
         shapes_(problem) {
     for (int t = 0; t < problem.triangles(); ++t) add_triangle(t);
     compare_with_boundary(clearance);
+    for (int point = 0; point < solution.rotation.size(); ++point)
+      skew_[point] += problem.coupling_load[problem.traces.rotation_at(point)];
   }
 
   /// ‖σ_h‖, or what counts as no stress at all.
@@ -117,7 +119,7 @@ class Balance {
     for (int dof = 0; dof < traces_; ++dof) {
       if (problem_.mesh.edge_triangles[dof / per_edge_][1] >= 0) continue;
       if (traces.is_free(dof)) {
-        flux_[dof] -= traces.traction()[traces[dof].unknown];
+        flux_[dof] -= problem_.coupling_load[traces[dof].unknown];
         trace_[dof] = 0;
       } else {
         flux_[dof] = 0;
@@ -143,8 +145,8 @@ class Balance {
   int traces_;             ///< degrees of freedom of m
   Eigen::VectorXd flux_;   ///< sum of the outward fluxes of both sides
   Eigen::VectorXd trace_;  ///< difference of the traces seen from both sides
-  Eigen::VectorXd skew_;   ///< (as σ, φ_z) for each point, and the sum of the sizes of its terms
-  Eigen::VectorXd skew_terms_;
+  Eigen::VectorXd skew_;   ///< (as σ, φ_z) and the couple for each point
+  Eigen::VectorXd skew_terms_;  ///< the sums of the sizes of the terms of (as σ, φ_z)
   PerShape<Shape> shapes_;
   double interior_ = 0;
   double imbalance_square_ = 0, load_square_ = 0, stress_square_ = 0;

@@ -101,6 +101,7 @@ class RigidBody {
       }
       add_traction(t, work);
     }
+    add_couples(work);
     return work;
   }
 
@@ -129,12 +130,25 @@ class RigidBody {
     for (int j = 0; j < 3 * per_edge; ++j) {
       const int dof = problem_.traces.dof(t, j), e = j / per_edge, function = j % per_edge / components_;
       if (!problem_.traces.is_free(dof)) continue;
-      const double force = problem_.traces.traction()[problem_.traces[dof].unknown];
+      const double force = problem_.coupling_load[problem_.traces[dof].unknown];
       if (force == 0) continue;
       const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
       const Point x = problem_.spaces().order == 0 ? Point((a + b) / 2) : (function == 0 ? a : b);
       work.add(force, component(j % components_, x));
     }
+  }
+
+  /// The third motion turns by 1 / size, and γ is minus the rotation.
+  void add_couples(Work& work) const {
+    if (!problem_.spaces().leaves_couples()) return;
+    std::vector<bool> seen(problem_.mesh.points.size(), false);
+    for (const int t : triangles_)
+      for (const int point : problem_.mesh.triangles[t]) {
+        if (seen[point]) continue;
+        seen[point] = true;
+        const double couple = -problem_.coupling_load[problem_.traces.rotation_at(point)];
+        work.add(couple / size_, Eigen::RowVector3d::UnitZ());
+      }
   }
 
   const Discretization& problem_;

@@ -1,23 +1,49 @@
 #include "fem/discretization.hpp"
 
+#include "fem/couple.hpp"
+#include "fem/lagrange.hpp"
+
 namespace signorini {
-namespace {
-
-Eigen::MatrixXd loads(const Element& element, const Mesh& mesh) {
-  Eigen::MatrixXd load(element.spaces().displacements(), mesh.triangles.size());
-  for (int t = 0; t < static_cast<int>(load.cols()); ++t) load.col(t) = element.load(mesh, t);
-  return load;
-}
-
-}  // namespace
 
 Discretization::Discretization(const Problem& posed, const Mesh& given)
     : problem(posed),
       mesh(given),
       element(posed),
-      load(loads(element, mesh)),
+      load(spaces().displacements(), triangles()),
       clearance(make_clearance_space(posed, mesh)),
-      traces(posed, mesh, clearance) {}
+      traces(posed, mesh, clearance),
+      coupling_load(Eigen::VectorXd::Zero(traces.unknowns())) {
+  take_up_body_load();
+  take_up_traction();
+}
+
+/// Half of a couple acts on the rotation at each end of an edge, a third at each corner of a triangle: γ is
+/// linear, and the rotation of the displacement is −γ.
+void Discretization::take_up_body_load() {
+  if (spaces().leaves_couples()) couples.resize(triangles());
+  for (int t = 0; t < triangles(); ++t) {
+    const TriangleLoad own = element.load(mesh, t);
+    load.col(t) = own.force;
+    if (!spaces().leaves_couples()) continue;
+    couples[t] = own.couple;
+    for (const int point : mesh.triangles[t]) coupling_load[traces.rotation_at(point)] -= own.couple / 3;
+  }
+}
+
+void Discretization::take_up_traction() {
+  const TractionField traction(problem, mesh);
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    for (int c = 0; c < spaces().components; ++c) {
+      const LocalVector moments =
+          mesh.length(edge) * edge_moments(spaces().order, [&](double s) { return traction(edge, c, s); });
+      for (int j = 0; j <= spaces().order; ++j) coupling_load[traces.trace_at(edge, j, c)] += moments[j];
+    }
+    if (!spaces().leaves_couples()) continue;
+    const double couple = couple_of_traction(traction, mesh, edge);
+    for (const int point : mesh.edges[edge]) coupling_load[traces.rotation_at(point)] -= couple / 2;
+  }
+}
 
 Eigen::VectorXd contact_forces(const Discretization& problem,
                                const std::function<LocalVector(int triangle)>& fluxes) {

@@ -22,9 +22,17 @@ struct Discretization {
   const Problem& problem;
   const Mesh& mesh;
   Element element;
-  Eigen::MatrixXd load;  ///< F, a column a triangle
+  Eigen::MatrixXd load;     ///< F, a column a triangle
+  Eigen::VectorXd couples;  ///< of the load, for each triangle; empty unless the spaces leave them
   ClearanceSpace clearance;
   TraceSpace traces;
+  /// What acts on the coupling itself, an entry an unknown: <t, μ> on Γ_F, and against the rotation the
+  /// couples of load and traction.
+  Eigen::VectorXd coupling_load;
+
+ private:
+  void take_up_body_load();
+  void take_up_traction();
 };
 
 /// <−σ_n, φ_i> for every row of the clearance space, the force that the foundation exerts, from the outward

@@ -1,5 +1,6 @@
 #include "fem/element.hpp"
 
+#include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
@@ -101,19 +102,22 @@ LocalMatrix Element::stress_mass(const Mesh& mesh, int triangle) const {
   return constant_form(AffineMap(mesh.corners(triangle)), Compliance::Identity(n, n));
 }
 
-LocalVector Element::load(const Mesh& mesh, int triangle) const {
+TriangleLoad Element::load(const Mesh& mesh, int triangle) const {
   const AffineMap map(mesh.corners(triangle));
+  const Point centroid = mesh.centroid(triangle);
   const int d = spaces_.components;
-  LocalVector sum = LocalVector::Zero(spaces_.displacements());
+  TriangleLoad load{LocalVector::Zero(spaces_.displacements())};
   for (int q = 0; q < TriangleRule::size; ++q) {
     const Point x = map(triangle_rule().points[q]);
+    const Vector arm = turned_left(x - centroid);
     const double weight = triangle_rule().weights[q] * map.determinant;
     for (int c = 0; c < d; ++c) {
       const double f = problem_.body(c, x);
-      for (int i = 0; i < v_[q].size(); ++i) sum[i * d + c] += weight * f * v_[q][i];
+      for (int i = 0; i < v_[q].size(); ++i) load.force[i * d + c] += weight * f * v_[q][i];
+      if (d == 2) load.couple += weight * f * arm[c];
     }
   }
-  return sum;
+  return load;
 }
 
 }  // namespace signorini

@@ -16,6 +16,12 @@ struct ElementMatrices {
   LocalMatrix skew;               ///< A = (τ_xy − τ_yx, φ_z), a row a corner; no rows for a membrane
 };
 
+/// What the body load does to one triangle.
+struct TriangleLoad {
+  LocalVector force;  ///< F = (f, v_i)
+  double couple = 0;  ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
+};
+
 /// Computes the matrices and loads of the triangles of a problem: C is the compliance of its material, f its
 /// body load.
 ///
@@ -26,11 +32,11 @@ class Element {
   explicit Element(const Problem& problem);
 
   ElementMatrices matrices(const Mesh& mesh, int triangle) const;
-  LocalVector load(const Mesh& mesh, int triangle) const;         ///< F = (f, v_i)
+  TriangleLoad load(const Mesh& mesh, int triangle) const;
   LocalMatrix stress_mass(const Mesh& mesh, int triangle) const;  ///< (τ_i, τ_j)
   bool has_constant_material() const { return constant_material_; }
-  /// (C σ, τ_j) for a stress in the basis of the spaces: M σ for the compliance M, but with the digits that the entries of M lose
-  /// where the volume is stiff.
+  /// (C σ, τ_j) for a stress in the basis of the spaces: M σ for the compliance M, but with the digits that
+  /// the entries of M lose where the volume is stiff.
   LocalVector strain(const Mesh& mesh, int triangle, const LocalMatrix& compliance,
                      const LocalVector& stress) const;
   const Spaces& spaces() const { return spaces_; }

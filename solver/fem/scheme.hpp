@@ -23,6 +23,8 @@ struct Spaces {
   int displacements() const { return static_cast<int>(divergence.rows()); }
   int traces_per_edge() const { return components * (order + 1); }
   int rotations() const { return components == 2 ? 3 : 0; }  ///< of a triangle
+  /// The displacement has no rotation of its own, so that the multiplier takes the couples of the loads.
+  bool leaves_couples() const { return components == 2 && order == 0; }
 };
 
 const Spaces& spaces_of(Scheme scheme, int components);

@@ -32,11 +32,6 @@ TraceSpace::TraceSpace(const Problem& problem, const Mesh& mesh, const Clearance
   for (CouplingDof& dof : dofs_)
     if (dof.unknown >= 0) dof.unknown = free_++;
   meet(clearance);
-  traction_ = Eigen::VectorXd::Zero(unknowns());
-  for (const BoundaryPart& part : mesh.boundary) {
-    const auto found = problem.boundary.find(part.name);
-    if (found != problem.boundary.end()) load(part, found->second);
-  }
 }
 
 void TraceSpace::turn(int edge, const Vector& direction) {
@@ -79,24 +74,9 @@ void TraceSpace::meet(const ClearanceSpace& clearance) {
     }
 }
 
-void TraceSpace::load(const BoundaryPart& part, const Condition& condition) {
-  const auto* traction = std::get_if<Traction>(&condition);
-  const auto* pressure = std::get_if<Pressure>(&condition);
-  if (!traction && !pressure) return;
-  for (const int edge : part.edges)
-    for (int c = 0; c < components_; ++c) {
-      const auto component = [&](const Point& x, const Vector& normal) {
-        return traction ? traction->value(c, x, normal) : -pressure->value(x, normal) * normal[c];
-      };
-      const LocalVector moments = mesh_.length(edge) * moments_of(component, mesh_, edge, order_);
-      for (int j = 0; j <= order_; ++j) traction_[at(edge, j, c).unknown] += moments[j];
-    }
-}
-
 int TraceSpace::dof(int triangle, int local) const {
   if (local >= traces_per_triangle())
-    return static_cast<int>(mesh_.edges.size()) * per_edge_ +
-           mesh_.triangles[triangle][local - traces_per_triangle()];
+    return first_rotation() + mesh_.triangles[triangle][local - traces_per_triangle()];
   const int e = local / per_edge_, function = local % per_edge_ / components_,
             component = local % components_;
   const int edge = mesh_.triangle_edges[triangle][e];
@@ -125,9 +105,8 @@ LocalMatrix TraceSpace::to_xy(int triangle) const {
 }
 
 Eigen::VectorXd TraceSpace::rotation(const Eigen::VectorXd& x) const {
-  const int first = static_cast<int>(mesh_.edges.size()) * per_edge_;
-  Eigen::VectorXd rotation(dofs_.size() - first);
-  for (Eigen::Index p = 0; p < rotation.size(); ++p) rotation[p] = x[dofs_[first + p].unknown];
+  Eigen::VectorXd rotation(dofs_.size() - first_rotation());
+  for (int p = 0; p < rotation.size(); ++p) rotation[p] = x[rotation_at(p)];
   return rotation;
 }
 

@@ -18,9 +18,9 @@ struct CouplingDof {
 ///
 /// m is data on Γ_D (the projection of u_D) and free inside and on Γ_F. On Γ_C and rollers an elastic body's
 /// m is split into its normal and its tangential component (on Γ_C along the contact's direction and across
-/// it): the tangential one is free, which is σ_T = 0; the normal one is 0 on rollers and Πg − λ on Γ_C (for the membrane, with u_n = −u, m = λ − Πg). The unknowns x
-/// are the free ones followed by the contact unknowns λ, which come last: the Cholesky factorisation leaves
-/// them to the contact problem.
+/// it): the tangential one is free, which is σ_T = 0; the normal one is 0 on rollers and Πg − λ on Γ_C (for
+/// the membrane, with u_n = −u, m = λ − Πg). The unknowns x are the free ones followed by the contact
+/// unknowns λ, which come last: the Cholesky factorisation leaves them to the contact problem.
 class TraceSpace {
  public:
   TraceSpace(const Problem& problem, const Mesh& mesh, const ClearanceSpace& clearance);
@@ -54,19 +54,22 @@ class TraceSpace {
   /// The rotation at every point; empty for a membrane.
   Eigen::VectorXd rotation(const Eigen::VectorXd& x) const;
 
-  /// The right side <t, μ> on Γ_F, one entry an unknown.
-  const Eigen::VectorXd& traction() const { return traction_; }
+  /// The unknown of m on an edge for a function and a component, and of the rotation at a point.
+  int trace_at(int edge, int function, int component) const {
+    return dofs_[edge * per_edge_ + function * components_ + component].unknown;
+  }
+  int rotation_at(int point) const { return dofs_[first_rotation() + point].unknown; }
 
  private:
   void fix(const BoundaryPart& part, const VectorField& value);
   void roll(const BoundaryPart& part);
   void reserve_contact(const ClearanceSpace& clearance);
   void meet(const ClearanceSpace& clearance);
-  void load(const BoundaryPart& part, const Condition& condition);
   void turn(int edge, const Vector& direction);
   /// The changes in the components that each edge carries.
   LocalVector own_changes(int triangle, const Eigen::VectorXd& dx) const;
   LocalVector in_xy(int triangle, const LocalVector& own) const;
+  int first_rotation() const { return static_cast<int>(mesh_.edges.size()) * per_edge_; }
   CouplingDof& at(int edge, int function, int component) {
     return dofs_[edge * per_edge_ + function * components_ + component];
   }
@@ -79,10 +82,9 @@ class TraceSpace {
   int free_ = 0;
   int contact_;
   std::vector<CouplingDof>
-      dofs_;                     ///< edge by edge, from the edge's first to its second point; then the points
+      dofs_;  ///< edge by edge, from the edge's first to its second point; then the points
   std::vector<Vector> directions_;  ///< of the first component on the turned edges
   std::vector<int> turned_;         ///< the index of each edge in directions_, or -1
-  Eigen::VectorXd traction_;
 };
 
 }  // namespace signorini

@@ -92,7 +92,7 @@ HybridSystem assemble(const Discretization& problem, Progress& progress) {
   ElementSum& sum = system.matrix;
   sum.size = problem.traces.unknowns();
   sum.per_element = problem.traces.dofs_per_triangle();
-  system.right = problem.traces.traction();
+  system.right = problem.coupling_load;
   PerShape<NumberedShape> shapes(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
@@ -110,7 +110,7 @@ HybridSystem assemble(const Discretization& problem, Progress& progress) {
 }
 
 Eigen::VectorXd assemble_right(const Discretization& problem, Progress& progress) {
-  Eigen::VectorXd right = problem.traces.traction();
+  Eigen::VectorXd right = problem.coupling_load;
   PerShape<Shape> shapes(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);

@@ -22,7 +22,7 @@ void subtract_forces(const TraceSpace& traces, int triangle, LocalVector force, 
 Recovered recover(const Discretization& problem, const Eigen::VectorXd& x, Progress& progress) {
   const TraceSpace& traces = problem.traces;
   Recovered all{Eigen::MatrixXd(problem.spaces().stresses(), problem.triangles()),
-                Eigen::MatrixXd(problem.spaces().displacements(), problem.triangles()), traces.traction()};
+                Eigen::MatrixXd(problem.spaces().displacements(), problem.triangles()), problem.coupling_load};
   PerShape<Elimination> eliminations(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
@@ -52,7 +52,7 @@ bool Recovered::is_balanced(const TraceSpace& traces) const {
 }
 
 void change(const Discretization& problem, const Eigen::VectorXd& dx, Recovered& fields, Progress& progress) {
-  fields.imbalance = problem.traces.traction();
+  fields.imbalance = problem.coupling_load;
   PerShape<Elimination> eliminations(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);

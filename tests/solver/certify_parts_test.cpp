@@ -28,7 +28,12 @@ struct Made {
   Eigen::VectorXd clearance;
 };
 
-/// A block pressed by a punch, bent besides, on a foundation that it leaves at one side.
+Field field(double (*value)(const Point&)) {
+  return Field([=](const Point& x, const Vector&) { return value(x); }, "/t");
+}
+
+/// A block pressed by a punch, bent besides, on a foundation that it leaves at one side. Its loads have
+/// couples on triangles and edges.
 Problem punch(Scheme scheme) {
   Problem problem;
   problem.mesh = {Divisions{8, 6}, Pattern::crossed};
@@ -38,8 +43,10 @@ Problem punch(Scheme scheme) {
       {"top", Fixed{VectorField(0.02, -0.05)}},
       {"bottom",
        Contact{Field([](const Point& x, const Vector&) { return 0.2 * std::pow(x.x() - 0.3, 2); }, "/t")}},
-      {"left", Traction{VectorField(0.03, -0.02)}}};
-  problem.body = VectorField(0.1, -0.2);
+      {"left",
+       Traction{VectorField(field([](const Point& x) { return 0.03 + 0.1 * x.y(); }), Field(-0.02))}}};
+  problem.body = VectorField(field([](const Point& x) { return 0.1 + x.y(); }),
+                             field([](const Point& x) { return -0.2 - x.x() * x.y(); }));
   return problem;
 }
 
@@ -56,15 +63,23 @@ TEST_P(Parts, EveryTriangleIsInBalanceOfForcesAndMoments) {
   for (int t = 0; t < made.discretization.triangles(); ++t) {
     const auto corners = mesh.corners(t);
     const Point centroid = (corners[0] + corners[1] + corners[2]) / 3;
-    Vector force = AffineMap(corners).determinant / 2 * Vector(0.1, -0.2);
+    const auto cross = [](const Vector& x, const Vector& y) { return x.x() * y.y() - x.y() * y.x(); };
+    Vector force = Vector::Zero();
     double moment = 0, size = 0;
+    const AffineMap map(corners);
+    for (int q = 0; q < TriangleRule::size; ++q) {
+      const Point x = map(triangle_rule().points[q]);
+      const Vector f =
+          triangle_rule().weights[q] * map.determinant * Vector(problem.body(0, x), problem.body(1, x));
+      force += f;
+      moment += cross(x - centroid, f);
+    }
     for (int e = 0; e < 3; ++e) {
       const Vector a = corners[(e + 1) % 3] - centroid, b = corners[(e + 2) % 3] - centroid;
       const Eigen::Matrix2d ends = tractions.on(t, e);
       const double length = (b - a).norm();
       force += length * (ends.col(0) + ends.col(1)) / 2;
       // ∫ x × t of two linear functions.
-      const auto cross = [](const Vector& x, const Vector& y) { return x.x() * y.y() - x.y() * y.x(); };
       moment += length / 6 *
                 (2 * cross(a, ends.col(0)) + cross(a, ends.col(1)) + cross(b, ends.col(0)) +
                  2 * cross(b, ends.col(1)));

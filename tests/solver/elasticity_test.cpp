@@ -207,7 +207,8 @@ TEST(Graded, AModulusThatVariesInLayersIsResolvedByTheMesh) {
   }
 }
 
-/// A body on rollers, pressed on a foundation that falls away, with a modulus that grows from 1 to 1e4 across it.
+/// A body on rollers, pressed on a foundation that falls away, with a modulus that grows from 1 to 1e4 across
+/// it.
 Problem graded_block(Scheme scheme, const std::function<double(const Point&)>& young) {
   Problem problem = problems::block(scheme, Pattern::crossed, 1, 0.3);
   problem.mesh.fineness = Divisions{48, 24};
@@ -307,8 +308,8 @@ TEST(SeveralBodies, OneThatNothingHoldsIsNamed) {
   expect_refused(loose, "has no contact");
 
   Problem lifted = two_bodies(Scheme::conforming);
-  lifted.boundary["roof"] = Traction{VectorField(
-      0, problems::function([](const Point& x) { return x.x() < 2 ? 0.7 : -0.7; }))};
+  lifted.boundary["roof"] =
+      Traction{VectorField(0, problems::function([](const Point& x) { return x.x() < 2 ? 0.7 : -0.7; }))};
   expect_refused(lifted, "the body around (0.5, 0.5) but contact");
 }
 
@@ -345,6 +346,31 @@ TEST(Reactions, BalanceTheLoads) {
     // keeps it only where the rotation space holds constants, which it does.
     EXPECT_NEAR(moment, -(1 * -0.3 - 0.5 * 0.2) * 2, 1e-10);
     EXPECT_GE(force, 0);
+  }
+}
+
+TEST(Reactions, BalanceTheMomentsOfLoadsThatVaryWithinATriangle) {
+  const auto field = [](const auto& f) {
+    return Field([=](const Point& x, const Vector&) { return f(x); }, "/test");
+  };
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    Problem problem = random_block(3);
+    problem.scheme = scheme;
+    problem.body = VectorField(field([](const Point& x) { return x.y(); }),
+                               field([](const Point& x) { return -x.x(); }));
+    problem.boundary = {
+        {"top", Fixed{}},
+        {"bottom", Contact{}},
+        {"left", Traction{VectorField(field([](const Point& x) { return x.y(); }), Field(1))}}};
+    const Solution solution = solve(problem, {ActiveSet{}, {}});
+    double moment = 0;
+    for (const Reaction& part : solution.summary.parts) {
+      moment += part.moment;
+      // ∫ (x t_y − y t_x) over x = 0, y from 0 to 1.
+      if (part.part == "left") EXPECT_NEAR(part.moment, -1. / 3, 1e-12);
+    }
+    // −∫ (x f_y − y f_x) over the block from (0, 0) to (2, 1).
+    EXPECT_NEAR(moment, 8. / 3 + 2. / 3, 1e-10);
   }
 }
 
