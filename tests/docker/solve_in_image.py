@@ -7,12 +7,21 @@ Nothing of the root can be written, as with `docker run --read-only`; the volume
 
 import http.client
 import json
+import socket
 import subprocess
 import sys
 import time
 
 USER = 10001
-PORT = 18080
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+PORT = free_port()
 ENVIRONMENT = {
     "PATH": "/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin",
     "SIGNORINI_HOST": "127.0.0.1",
