@@ -42,7 +42,8 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
   progress.enter(Phase::assemble);
   discretization_ = std::make_unique<const Discretization>(problem, operator_->mesh());
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
-  condensed_ = std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress));
+  condensed_ =
+      std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
 }
 
 void CondensedProblem::make(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress) {
@@ -53,7 +54,7 @@ void CondensedProblem::make(const Problem& problem, std::shared_ptr<const Mesh> 
   progress.enter(Phase::factorize);
   operator_ = std::make_shared<const Operator>(std::move(mesh), discretization_->clearance, system.matrix,
                                                held, progress);
-  condensed_ = std::make_unique<CondensedContact>(*operator_, system.right);
+  condensed_ = std::make_unique<CondensedContact>(*operator_, system.right, progress);
 }
 
 Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start) {
@@ -69,12 +70,12 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
 Fields CondensedProblem::complete(const ContactResult& found, const std::vector<int>& exactly_open,
                                   Progress& progress) {
   const Discretization& problem = *discretization_;
-  Eigen::VectorXd x = condensed_->traces(found.clearance);
+  Eigen::VectorXd x = condensed_->traces(found.clearance, progress);
   Recovered fields = recover(problem, x, progress);
   // A stiff volume (ν → 1/2) costs the factorisation digits that iterative refinement brings back.
   constexpr int most_steps = 3;
   for (int step = 0; step < most_steps && !fields.is_balanced(problem.traces); ++step) {
-    const Eigen::VectorXd dx = condensed_->correction(fields.imbalance, exactly_open);
+    const Eigen::VectorXd dx = condensed_->correction(fields.imbalance, exactly_open, progress);
     change(problem, dx, fields, progress);
     x += dx;
   }

@@ -69,7 +69,7 @@ FluxFunctional contact_force_on(const Discretization& problem, int row) {
 }
 
 Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& problem,
-                         const Operator& made, Cholesky::Workspace& workspace) {
+                         const Operator& made, Cholesky::Workspace& workspace, Progress& progress) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.traces.unknowns());
   for (const auto& [edge, weights] : functional.edges) {
     const int t = triangle_at(problem, edge);
@@ -77,7 +77,7 @@ Eigen::VectorXd response(const FluxFunctional& functional, const Discretization&
     coupling.segment(first_flux(problem, t, edge), weights.size()) = weights;
     add_forces(problem, t, coupling, forces);
   }
-  return made.factor().condense(forces, workspace).trailing;
+  return made.factor().condense(forces, workspace, progress).trailing;
 }
 
 }  // namespace signorini

@@ -14,8 +14,9 @@ namespace signorini {
 namespace {
 
 Eigen::VectorXd contact_pressure(const Discretization& problem, const Eigen::MatrixXd& stress) {
-  return contact_pressure(problem.clearance,
-                          contact_forces(problem, [&](int t) -> LocalVector { return stress.col(t); }));
+  Eigen::VectorXd forces;
+  contact_forces(problem, [&](int t) -> LocalVector { return stress.col(t); }, forces);
+  return contact_pressure(problem.clearance, forces);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ class Sweep::Reference {
       : problem_(std::move(posed)), condensed_(problem_, kept, progress), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact));
-    observe(solution.stress);
+    observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
   }
 
@@ -98,13 +98,13 @@ class Sweep::Reference {
  private:
   const ClearanceSpace& space() const { return condensed_.discretization().clearance; }
 
-  void observe(const Eigen::MatrixXd& stress) {
+  void observe(const Eigen::MatrixXd& stress, Progress& progress) {
     const Discretization& discretization = condensed_.discretization();
     Cholesky::Workspace workspace;
     const auto affine = [&](const FluxFunctional& functional, bool answers) -> AffineForce {
       const double value = functional(discretization, stress);
       if (!answers) return {value, Eigen::VectorXd::Zero(contact_.size())};
-      return {value, response(functional, discretization, *condensed_.used_operator(), workspace)};
+      return {value, response(functional, discretization, *condensed_.used_operator(), workspace, progress)};
     };
     for (const BoundaryPart& part : discretization.mesh.boundary) {
       const bool free = !condition_on<Fixed>(problem_, part.name) &&

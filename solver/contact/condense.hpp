@@ -10,18 +10,19 @@ namespace signorini {
 class CondensedContact {
  public:
   /// One forward solve. The operator must outlive it.
-  CondensedContact(const Operator& made, const Eigen::VectorXd& right);
+  CondensedContact(const Operator& made, const Eigen::VectorXd& right, Progress& progress);
 
   const ContactComplement& contact() const { return contact_; }
 
   /// All traces for the clearances: one backward solve.
-  Eigen::VectorXd traces(const Eigen::VectorXd& clearance) {
-    return factor_.expand(right_, clearance, workspace_);
+  Eigen::VectorXd traces(const Eigen::VectorXd& clearance, Progress& progress) {
+    return factor_.expand(right_, clearance, workspace_, progress);
   }
 
   /// What the unknowns lack for an imbalance b − K x that the contact unknowns named open share and the
   /// others do not: one step of iterative refinement.
-  Eigen::VectorXd correction(const Eigen::VectorXd& imbalance, const std::vector<int>& open);
+  Eigen::VectorXd correction(const Eigen::VectorXd& imbalance, const std::vector<int>& open,
+                             Progress& progress);
 
  private:
   const Cholesky& factor_;

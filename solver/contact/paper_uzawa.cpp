@@ -88,10 +88,10 @@ void UzawaIteration::start() {
   displacement_ = Eigen::MatrixXd::Constant(load_.rows(), load_.cols(), settings_.initial_displacement);
   clearance_.resize(problem_.clearance.unknowns);
   weight_.resize(problem_.clearance.unknowns);
+  pressure_.resize(problem_.clearance.unknowns);
   const double u = settings_.initial_displacement;
   for (const ContactEdge& contact : problem_.clearance.edges) {
-    const double normal_displacement =
-        problem_.spaces().components == 1 ? -u : u * contact.direction.sum();
+    const double normal_displacement = problem_.spaces().components == 1 ? -u : u * contact.direction.sum();
     for (int j = 0; j <= problem_.spaces().order; ++j) {
       const ClearanceRow& row = problem_.clearance.rows[contact.rows[j]];
       if (row.unknown < 0) continue;
@@ -99,19 +99,23 @@ void UzawaIteration::start() {
       weight_[row.unknown] = row.weight;
     }
   }
+  mass_inverse_ = problem_.spaces().displacement_mass.inverse();
+  determinant_.resize(problem_.triangles());
+  for (int t = 0; t < problem_.triangles(); ++t)
+    determinant_[t] = AffineMap(problem_.mesh.corners(t)).determinant;
   x_ = Eigen::VectorXd::Zero(problem_.traces.unknowns());
   imbalance_.resizeLike(load_);
 }
 
-void UzawaIteration::solve_first_equation() {
+void UzawaIteration::solve_first_equation(Progress& progress) {
   const int n = problem_.traces.dofs_per_triangle(), free = problem_.traces.free_unknowns();
   right_ = problem_.coupling_load.head(free);
   x_.head(free).setZero();
   x_.tail(clearance_.size()) = clearance_;
+  augmented_ = displacement_ + settings_.augmentation * load_;
   for (int t = 0; t < problem_.triangles(); ++t) {
     // t − E σ of the data alone: P (u + r Πf) − K_r m with the free traces at 0.
-    const LocalVector w = displacement_.col(t) + settings_.augmentation * load_.col(t);
-    LocalVector flux = local(coupling_, t, n).lazyProduct(w);
+    LocalVector flux = local(coupling_, t, n).lazyProduct(augmented_.col(t));
     if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * problem_.traces.values(t, x_);
     if (problem_.traces.is_turned(t)) flux = (problem_.traces.to_xy(t).transpose() * flux).eval();
     for (int j = 0; j < n; ++j) {
@@ -119,41 +123,40 @@ void UzawaIteration::solve_first_equation() {
       if (problem_.traces.is_free(dof)) right_[problem_.traces[dof].unknown] += flux[j];
     }
   }
-  factor_->solve(right_, workspace_);
+  factor_->solve(right_, workspace_, progress);
   x_.head(free) = right_;
 }
 
 void UzawaIteration::update_displacement() {
   const int n = problem_.traces.dofs_per_triangle();
-  const LocalMatrix inverse_mass = problem_.spaces().displacement_mass.inverse();
   last_displacement_ = displacement_;
   for (int t = 0; t < problem_.triangles(); ++t) {
-    const LocalVector w = displacement_.col(t) + settings_.augmentation * load_.col(t);
     const LocalVector m = problem_.traces.values(t, x_);
     LocalVector divergence = local(coupling_, t, n).transpose().lazyProduct(m);
-    divergence -= local(divergence_, t, static_cast<int>(w.size())).lazyProduct(w);
-    const double determinant = AffineMap(problem_.mesh.corners(t)).determinant;
-    imbalance_.col(t) = inverse_mass.lazyProduct(divergence) / determinant + load_.col(t);
+    divergence -= local(divergence_, t, static_cast<int>(divergence.size())).lazyProduct(augmented_.col(t));
+    imbalance_.col(t) = mass_inverse_.lazyProduct(divergence) / determinant_[t] + load_.col(t);
   }
   displacement_ += settings_.rho * imbalance_;
 }
 
-/// <−σ_n^m, φ_i> for the contact unknowns, from the traces and displacements of σ^m.
-Eigen::VectorXd UzawaIteration::contact_force() const {
-  const int n = problem_.traces.dofs_per_triangle();
-  const Eigen::VectorXd rows = contact_forces(problem_, [&](int t) -> LocalVector {
-    const LocalVector w = last_displacement_.col(t) + settings_.augmentation * load_.col(t);
-    return stiffness_[stiffness_of_[t]] * problem_.traces.values(t, x_) - local(coupling_, t, n) * w;
-  });
-  Eigen::VectorXd force(clearance_.size());
+/// −σ_n^m = <−σ_n^m, φ_i> / <1, φ_i> from the traces and displacements of σ^m.
+void UzawaIteration::update_pressure() {
+  contact_forces(
+      problem_, [this](int t) { return flux_on_contact(t); }, forces_);
   for (std::size_t i = 0; i < problem_.clearance.rows.size(); ++i)
-    if (problem_.clearance.rows[i].unknown >= 0) force[problem_.clearance.rows[i].unknown] = rows[i];
-  return force;
+    if (const int unknown = problem_.clearance.rows[i].unknown; unknown >= 0)
+      pressure_[unknown] = forces_[static_cast<Eigen::Index>(i)] / weight_[unknown];
+}
+
+LocalVector UzawaIteration::flux_on_contact(int t) const {
+  LocalVector flux = stiffness_[stiffness_of_[t]].lazyProduct(problem_.traces.values(t, x_));
+  flux -= local(coupling_, t, static_cast<int>(flux.size())).lazyProduct(augmented_.col(t));
+  return flux;
 }
 
 void UzawaIteration::update_clearance() {
   last_clearance_ = clearance_;
-  pressure_ = contact_force().cwiseQuotient(weight_);
+  update_pressure();
   clearance_ = (clearance_ - settings_.rho * pressure_).cwiseMax(0);
 }
 
@@ -176,7 +179,7 @@ Iteration UzawaIteration::record() {
 Outcome UzawaIteration::run(Progress& progress) {
   double first_change = 0;
   while (progress.iterations() < settings_.max_iterations) {
-    solve_first_equation();
+    solve_first_equation(progress);
     update_displacement();
     update_clearance();
     const double change =
@@ -203,8 +206,7 @@ Eigen::MatrixXd UzawaIteration::stress() const {
     const AugmentedElimination& elimination = eliminations(t, [&](const ElementMatrices& matrices) {
       return AugmentedElimination(matrices, problem_.spaces(), settings_.augmentation);
     });
-    stress.col(t) = elimination.stress(problem_.traces.values(t, x_),
-                                       last_displacement_.col(t) + settings_.augmentation * load_.col(t));
+    stress.col(t) = elimination.stress(problem_.traces.values(t, x_), augmented_.col(t));
   }
   return stress;
 }

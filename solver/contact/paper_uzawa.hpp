@@ -35,11 +35,12 @@ class UzawaIteration {
   void eliminate(Progress& progress);
   bool add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
   void start();
-  void solve_first_equation();
+  void solve_first_equation(Progress& progress);
   void update_displacement();
   void update_clearance();
   Iteration record();
-  Eigen::VectorXd contact_force() const;
+  void update_pressure();
+  LocalVector flux_on_contact(int triangle) const;
 
   const Discretization& problem_;
   const PaperUzawa settings_;
@@ -50,13 +51,17 @@ class UzawaIteration {
   std::vector<int> stiffness_of_;          ///< its index for each triangle, or -1
   Eigen::MatrixXd coupling_, divergence_;  ///< P and D, a column a triangle
   Eigen::MatrixXd load_;                   ///< Π_V f, a column a triangle
+  LocalMatrix mass_inverse_;               ///< (v_i, v_j)⁻¹ times det J
+  Eigen::VectorXd determinant_;            ///< det J of each triangle
   Eigen::VectorXd weight_;                 ///< <1, φ_i> of the contact unknowns
 
   Eigen::VectorXd x_;  ///< traces for the current data, and λ^m behind them
   Eigen::VectorXd right_;
   Eigen::MatrixXd displacement_, last_displacement_;
+  Eigen::MatrixXd augmented_;  ///< u^m + r Π_V f
   Eigen::VectorXd clearance_, last_clearance_;
   Eigen::MatrixXd imbalance_;  ///< Π_V (div σ^m + f), a column a triangle
+  Eigen::VectorXd forces_;     ///< <−σ_n^m, φ_i> of all rows of the clearance space
   Eigen::VectorXd pressure_;   ///< −σ_n^m of the contact unknowns
   double first_imbalance_ = 0, largest_pressure_ = 0;
 };

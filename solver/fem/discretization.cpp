@@ -45,10 +45,10 @@ void Discretization::take_up_traction() {
   }
 }
 
-Eigen::VectorXd contact_forces(const Discretization& problem,
-                               const std::function<LocalVector(int triangle)>& fluxes) {
+void contact_forces(const Discretization& problem, const std::function<LocalVector(int triangle)>& fluxes,
+                    Eigen::VectorXd& forces) {
   const int per_edge = problem.spaces().traces_per_edge(), d = problem.spaces().components;
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.clearance.rows.size());
+  forces.setZero(static_cast<Eigen::Index>(problem.clearance.rows.size()));
   for (const ContactEdge& contact : problem.clearance.edges) {
     const int t = problem.mesh.edge_triangles[contact.edge][0];
     const int first = problem.mesh.local_edge(t, contact.edge) * per_edge;
@@ -59,7 +59,6 @@ Eigen::VectorXd contact_forces(const Discretization& problem,
       forces[contact.rows[problem.traces.dof(t, j) % per_edge / d]] += force;
     }
   }
-  return forces;
 }
 
 }  // namespace signorini

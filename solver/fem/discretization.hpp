@@ -37,7 +37,7 @@ struct Discretization {
 
 /// <−σ_n, φ_i> for every row of the clearance space, the force that the foundation exerts, from the outward
 /// fluxes of the triangles on Γ_C in x and y components.
-Eigen::VectorXd contact_forces(const Discretization& problem,
-                               const std::function<LocalVector(int triangle)>& fluxes);
+void contact_forces(const Discretization& problem, const std::function<LocalVector(int triangle)>& fluxes,
+                    Eigen::VectorXd& forces);
 
 }  // namespace signorini

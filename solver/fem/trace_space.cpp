@@ -24,6 +24,7 @@ TraceSpace::TraceSpace(const Problem& problem, const Mesh& mesh, const Clearance
       contact_(clearance.unknowns),
       dofs_(mesh.edges.size() * per_edge_ + (rotations_ ? mesh.points.size() : 0), CouplingDof{0, 0, 1}),
       turned_(mesh.edges.size(), -1) {
+  number_triangles();
   for (const BoundaryPart& part : mesh.boundary) {
     if (const auto* fixed = condition_on<Fixed>(problem, part.name)) fix(part, fixed->value);
     if (condition_on<Roller>(problem, part.name)) roll(part);
@@ -74,7 +75,13 @@ void TraceSpace::meet(const ClearanceSpace& clearance) {
     }
 }
 
-int TraceSpace::dof(int triangle, int local) const {
+void TraceSpace::number_triangles() {
+  triangle_dofs_.reserve(mesh_.triangles.size() * dofs_per_triangle());
+  for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t)
+    for (int j = 0; j < dofs_per_triangle(); ++j) triangle_dofs_.push_back(dof_of(t, j));
+}
+
+int TraceSpace::dof_of(int triangle, int local) const {
   if (local >= traces_per_triangle())
     return first_rotation() + mesh_.triangles[triangle][local - traces_per_triangle()];
   const int e = local / per_edge_, function = local % per_edge_ / components_,

@@ -35,7 +35,9 @@ class TraceSpace {
   /// its corners.
   int traces_per_triangle() const { return 3 * per_edge_; }
   int dofs_per_triangle() const { return 3 * per_edge_ + rotations_; }
-  int dof(int triangle, int local) const;
+  int dof(int triangle, int local) const {
+    return triangle_dofs_[static_cast<std::size_t>(triangle) * dofs_per_triangle() + local];
+  }
   const CouplingDof& operator[](int dof) const { return dofs_[dof]; }
   /// Neither data nor a clearance.
   bool is_free(int dof) const { return dofs_[dof].unknown >= 0 && dofs_[dof].unknown < free_; }
@@ -61,6 +63,8 @@ class TraceSpace {
   int rotation_at(int point) const { return dofs_[first_rotation() + point].unknown; }
 
  private:
+  void number_triangles();
+  int dof_of(int triangle, int local) const;
   void fix(const BoundaryPart& part, const VectorField& value);
   void roll(const BoundaryPart& part);
   void reserve_contact(const ClearanceSpace& clearance);
@@ -83,6 +87,7 @@ class TraceSpace {
   int contact_;
   std::vector<CouplingDof>
       dofs_;  ///< edge by edge, from the edge's first to its second point; then the points
+  std::vector<int> triangle_dofs_;  ///< dofs_per_triangle() a triangle: every loop over triangles asks
   std::vector<Vector> directions_;  ///< of the first component on the turned edges
   std::vector<int> turned_;         ///< the index of each edge in directions_, or -1
 };

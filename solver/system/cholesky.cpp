@@ -44,6 +44,24 @@ class Stack {
   std::size_t used_ = 0;
 };
 
+/// Looks at the observer each time that a solve has read so many numbers of the factor.
+class Pace {
+ public:
+  explicit Pace(Progress& progress) : progress_(progress) {}
+
+  void add(std::size_t numbers) {
+    read_ += numbers;
+    if (read_ < kRead) return;
+    read_ = 0;
+    progress_.check();
+  }
+
+ private:
+  static constexpr std::size_t kRead = 1 << 18;
+  Progress& progress_;
+  std::size_t read_ = 0;
+};
+
 }  // namespace
 
 NotPositiveDefinite::NotPositiveDefinite() : std::runtime_error("the matrix is not positive definite") {}
@@ -55,7 +73,12 @@ OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisat
 class Cholesky::Factorisation {
  public:
   Factorisation(Cholesky& own, const ElementSum& matrix, Progress& progress)
-      : own_(own), matrix_(matrix), progress_(progress), position_(matrix.size), stacks_(make_stacks()), diagonal_(matrix.size) {
+      : own_(own),
+        matrix_(matrix),
+        progress_(progress),
+        position_(matrix.size),
+        stacks_(make_stacks()),
+        diagonal_(matrix.size) {
     own_.order_.for_each_piece([this](int piece) { eliminate(piece); });
   }
 
@@ -193,8 +216,8 @@ class Cholesky::Factorisation {
     }
   }
 
-  /// A pivot of which the elimination leaves less than double precision holds is rounding, not stiffness. It is
-  /// compared with its own diagonal entry, so that the units of the unknowns do not matter.
+  /// A pivot of which the elimination leaves less than double precision holds is rounding, not stiffness. It
+  /// is compared with its own diagonal entry, so that the units of the unknowns do not matter.
   void check_pivots(const Dissection::Front& front, const Target& target) const {
     constexpr double rounding = 1e-13;
     for (int k = 0; k < front.pivots; ++k) {
@@ -229,13 +252,15 @@ Cholesky::Cholesky(const ElementSum& matrix, int trailing, Progress& progress)
   complement_ = factorisation.complement();
 }
 
-void Cholesky::forward(Eigen::VectorXd& x, Workspace& workspace) const {
+void Cholesky::forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
   workspace.front.resize(largest_front_);
   double* local = workspace.front.data();
+  Pace pace(progress);
   order_.for_each_piece([&](int piece) {
     const Dissection::Front front = order_.front(piece);
     const int m = front.size(), p = front.pivots;
     if (p == 0) return;
+    pace.add(static_cast<std::size_t>(m) * p);
     for (int k = 0; k < p; ++k) local[k] = x[front.unknowns[k]];
     const double* columns = panel(piece);
     cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, local, 1);
@@ -245,13 +270,15 @@ void Cholesky::forward(Eigen::VectorXd& x, Workspace& workspace) const {
   });
 }
 
-void Cholesky::backward(Eigen::VectorXd& x, Workspace& workspace) const {
+void Cholesky::backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
   workspace.front.resize(largest_front_);
   double* local = workspace.front.data();
+  Pace pace(progress);
   order_.for_each_piece_outside_in([&](int piece) {
     const Dissection::Front front = order_.front(piece);
     const int m = front.size(), p = front.pivots;
     if (p == 0) return;
+    pace.add(static_cast<std::size_t>(m) * p);
     for (int k = 0; k < m; ++k) local[k] = x[front.unknowns[k]];
     const double* columns = panel(piece);
     cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, local + p, 1, 1, local, 1);
@@ -260,24 +287,25 @@ void Cholesky::backward(Eigen::VectorXd& x, Workspace& workspace) const {
   });
 }
 
-Cholesky::Condensed Cholesky::condense(const Eigen::VectorXd& b, Workspace& workspace) const {
+Cholesky::Condensed Cholesky::condense(const Eigen::VectorXd& b, Workspace& workspace,
+                                       Progress& progress) const {
   Condensed condensed{b, {}};
-  forward(condensed.forward, workspace);
+  forward(condensed.forward, workspace, progress);
   condensed.trailing = condensed.forward.tail(trailing_);
   return condensed;
 }
 
-Eigen::VectorXd Cholesky::expand(const Condensed& b, const Eigen::VectorXd& trailing,
-                                 Workspace& workspace) const {
+Eigen::VectorXd Cholesky::expand(const Condensed& b, const Eigen::VectorXd& trailing, Workspace& workspace,
+                                 Progress& progress) const {
   Eigen::VectorXd x = b.forward;
   x.tail(trailing_) = trailing;
-  backward(x, workspace);
+  backward(x, workspace, progress);
   return x;
 }
 
-void Cholesky::solve(Eigen::VectorXd& x, Workspace& workspace) const {
-  forward(x, workspace);
-  backward(x, workspace);
+void Cholesky::solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
+  forward(x, workspace, progress);
+  backward(x, workspace, progress);
 }
 
 std::size_t Cholesky::bytes() const {

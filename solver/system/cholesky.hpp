@@ -29,7 +29,8 @@ struct OutOfMemory : std::runtime_error {
 /// With K = [K_II K_IC; K_CI K_CC], C the trailing unknowns, K_II = L Lᵀ is factored, and what the whole
 /// leaves is the complement S = K_CC − K_CI K_II⁻¹ K_IC. A solve splits in two: condense, then expand.
 ///
-/// Solving changes nothing in the factor: any number of threads may do so, each in a workspace of its own.
+/// Solving changes nothing in the factor: any number of threads may do so, each in a workspace of its own. It
+/// throws what Progress throws.
 class Cholesky {
  public:
   /// What a solve works in; kept from one solve to the next, it allocates nothing. For one thread at a time.
@@ -48,13 +49,14 @@ class Cholesky {
     Eigen::VectorXd forward;   ///< L⁻¹ b_I
     Eigen::VectorXd trailing;  ///< b_C − K_CI K_II⁻¹ b_I
   };
-  Condensed condense(const Eigen::VectorXd& b, Workspace& workspace) const;
+  Condensed condense(const Eigen::VectorXd& b, Workspace& workspace, Progress& progress) const;
 
   /// The unknowns (x_I, x_C) with x_C given and K_II x_I = b_I − K_IC x_C: one backward solve.
-  Eigen::VectorXd expand(const Condensed& b, const Eigen::VectorXd& trailing, Workspace& workspace) const;
+  Eigen::VectorXd expand(const Condensed& b, const Eigen::VectorXd& trailing, Workspace& workspace,
+                         Progress& progress) const;
 
   /// x = K⁻¹ b in place, where no unknown is trailing.
-  void solve(Eigen::VectorXd& x, Workspace& workspace) const;
+  void solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const;
 
   /// The memory that the factor takes.
   std::size_t bytes() const;
@@ -63,8 +65,8 @@ class Cholesky {
   class Factorisation;
 
   double* panel(int piece) const { return values_.get() + panel_begin_[piece]; }
-  void forward(Eigen::VectorXd& x, Workspace& workspace) const;
-  void backward(Eigen::VectorXd& x, Workspace& workspace) const;
+  void forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const;
+  void backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const;
 
   int trailing_;
   Dissection order_;

@@ -34,7 +34,8 @@ struct GaussRule {
       double x = std::cos(std::numbers::pi * (i + 0.75) / (size + 0.5)), slope = 0;
       for (int step = 0; step < 8; ++step) {
         double before = 1, value = x;
-        for (int k = 2; k <= size; ++k) before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
+        for (int k = 2; k <= size; ++k)
+          before = std::exchange(value, ((2 * k - 1) * x * value - (k - 1) * before) / k);
         slope = size * (x * value - before) / (x * x - 1);
         x -= value / slope;
       }
@@ -80,12 +81,13 @@ class EdgeFields {
       : discretization_(problem, *mesh), progress_(observer_, std::nullopt) {
     const HybridSystem system = assemble(discretization_, progress_);
     const Operator made(mesh, discretization_.clearance, system.matrix, false, progress_);
-    CondensedContact condensed(made, system.right);
+    CondensedContact condensed(made, system.right, progress_);
     const ContactResult found = active_set(condensed.contact(), {}, progress_);
-    const Eigen::VectorXd x = condensed.traces(found.clearance);
+    const Eigen::VectorXd x = condensed.traces(found.clearance, progress_);
     Recovered fields = recover(discretization_, x, progress_);
-    solution_ = summarize(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
-                          {ActiveSet{}, std::nullopt}, progress_);
+    solution_ =
+        summarize(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
+                  {ActiveSet{}, std::nullopt}, progress_);
     v_ = std::make_unique<AdmissibleDisplacement>(discretization_, solution_, x);
     pressure_ = std::make_unique<ContactPressure>(discretization_, solution_.stress,
                                                   discretization_.clearance.clearance(found.clearance));
@@ -164,11 +166,12 @@ Sides sides_of(const EdgeFields& fields) {
     const auto integral = [&](const auto& f) {
       return map.determinant * integrate_from(fields.corner_to_integrate_from(t), f);
     };
-    sides.stress_error += integral(
-        [&](const Point& x) { return (Exact::stress(map(x)) - fields.stress(t, x)).squaredNorm(); });
+    sides.stress_error +=
+        integral([&](const Point& x) { return (Exact::stress(map(x)) - fields.stress(t, x)).squaredNorm(); });
     sides.left +=
         integral([&](const Point& x) { return (Exact::stress(map(x)) - fields.slope(t, x)).squaredNorm(); });
-    sides.right += integral([&](const Point& x) { return (fields.stress(t, x) - fields.slope(t, x)).squaredNorm(); });
+    sides.right +=
+        integral([&](const Point& x) { return (fields.stress(t, x) - fields.slope(t, x)).squaredNorm(); });
   }
   sides.left += sides.stress_error;
   for (int i = 0; i < static_cast<int>(fields.contact_edges().size()); ++i) {
@@ -225,8 +228,8 @@ double distance(const Problem& problem, const Solution& coarse, const Solution& 
     const AffineMap parent_map(coarse.mesh.corners(parent));
     const Point x = map(reference);
     const Point there = parent_map.jacobian.inverse() * (x - coarse.mesh.corners(parent)[0]);
-    const Vector difference =
-        finer.values(map, reference) * fine.stress.col(t) - element.values(parent_map, there) * coarse.stress.col(parent);
+    const Vector difference = finer.values(map, reference) * fine.stress.col(t) -
+                              element.values(parent_map, there) * coarse.stress.col(parent);
     const auto compliance = compliance_at(problem.material, x);
     return difference.dot(compliance * difference);
   }));

@@ -113,12 +113,14 @@ void expect_dense_answers(const PlacedMatrix& matrix, int trailing) {
 
   const Eigen::VectorXd b = Eigen::VectorXd::Random(k.rows());
   Cholesky::Workspace workspace;
-  const Cholesky::Condensed condensed = factor.condense(b, workspace);
+  Observer indifferent;
+  Progress progress(indifferent, {});
+  const Cholesky::Condensed condensed = factor.condense(b, workspace, progress);
   const Eigen::VectorXd right = b.tail(trailing) - coupling.transpose() * inner.solve(b.head(leading));
   EXPECT_LT((condensed.trailing - right).norm(), 1e-10);
 
   const Eigen::VectorXd given = Eigen::VectorXd::Random(trailing);
-  const Eigen::VectorXd expanded = factor.expand(condensed, given, workspace);
+  const Eigen::VectorXd expanded = factor.expand(condensed, given, workspace, progress);
   EXPECT_EQ(expanded.tail(trailing), given);
   EXPECT_LT((expanded.head(leading) - inner.solve(b.head(leading) - coupling * given)).norm(), 1e-10);
 }
@@ -140,7 +142,9 @@ TEST(Cholesky, SolvesInPlace) {
   const Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size());
   Eigen::VectorXd x = b;
   Cholesky::Workspace workspace;
-  factor_of(matrix, 0).solve(x, workspace);
+  Observer indifferent;
+  Progress progress(indifferent, {});
+  factor_of(matrix, 0).solve(x, workspace, progress);
   EXPECT_LT((matrix.k * x - b).norm(), 1e-11);
 }
 
@@ -173,6 +177,20 @@ TEST(Cholesky, EndsWhenTheObserverDoes) {
   } impatient;
   Progress progress(impatient, {});
   EXPECT_THROW(Cholesky(random_matrix(16, 1).sum(), 4, progress), Cancelled);
+}
+
+TEST(Cholesky, ALongSolveEndsWhenTheObserverDoes) {
+  constexpr int n = 550;
+  PlacedMatrix matrix{Eigen::MatrixXd::Ones(n, n) + Eigen::MatrixXd::Identity(n, n), {}};
+  for (int i = 0; i < n; ++i) matrix.points.emplace_back(i, 0);
+  const Cholesky factor = factor_of(matrix, 0);
+  struct Unwilling : Observer {
+    bool keep_going() override { return false; }
+  } unwilling;
+  Progress progress(unwilling, {});
+  Cholesky::Workspace workspace;
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(n);
+  EXPECT_THROW(factor.solve(x, workspace, progress), Cancelled);
 }
 
 }  // namespace
