@@ -45,6 +45,7 @@ const Names<CellOfRow>& columns_of_bound() {
       {"contact", of_bound(&ErrorBound::Parts::contact)},
       {"oscillation", of_bound(&ErrorBound::Parts::oscillation)},
       {"equilibration", of_bound(&ErrorBound::Parts::equilibration)},
+      {"asymmetry", of_bound(&ErrorBound::Parts::asymmetry)},
       {"effectivity",
        [](const StudyRow& row) { return cell_of(quotient(row.error_bound, row.errors.total)); }},
       {"stress_effectivity",

@@ -60,6 +60,7 @@ void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
       .member("contact", bound.parts.contact)
       .member("oscillation", bound.parts.oscillation)
       .member("equilibration", bound.parts.equilibration)
+      .member("asymmetry", bound.parts.asymmetry)
       .end_object();
   out.end_object();
 }

@@ -75,7 +75,8 @@ struct ErrorBound {
     double constitutive = 0;   ///< ‖σ* − E ε(v)‖_C
     double contact = 0;        ///< √(2 <p*, g − v_n>)
     double oscillation = 0;    ///< of the load and the traction
-    double equilibration = 0;  ///< ‖σ* − σ_h‖_C
+    double equilibration = 0;  ///< ‖σ* − sym σ_h‖_C
+    double asymmetry = 0;      ///< ‖skew σ_h‖_C
   };
 
   double value = 0;

@@ -89,6 +89,12 @@ void serialize(Archive& archive, ErrorBound& bound) {
           bound.parts);
 }
 
+/// What came to the parts later; it ends the lists that hold a bound.
+template <class Archive>
+void serialize_asymmetry(Archive& archive, std::optional<ErrorBound>& bound) {
+  if (bound) archive(bound->parts.asymmetry);
+}
+
 template <class Archive>
 void serialize(Archive& archive, Timings& timings) {
   archive(timings.mesh, timings.assemble, timings.factorize, timings.iterate, timings.total);
@@ -106,6 +112,7 @@ void serialize(Archive& archive, Summary& summary, std::uint32_t version) {
           summary.unknowns, summary.energy, summary.residuals, summary.contact, summary.parts,
           summary.timings, summary.peak_memory_bytes, summary.reused, summary.error_bound);
   if (version >= 1) archive(summary.levels, summary.timings.certify);
+  if (version >= 2) serialize_asymmetry(archive, summary.error_bound);
 }
 
 template <class Archive>
@@ -122,8 +129,8 @@ void serialize(Archive& archive, TrueErrors& errors) {
 
 template <class Archive>
 void serialize(Archive& archive, StudyRow& row) {
-  archive(row.scheme, row.error, row.level, row.size, row.triangles, row.unknowns, row.energy, row.error_bound,
-          row.errors, row.iterations, row.seconds);
+  archive(row.scheme, row.error, row.level, row.size, row.triangles, row.unknowns, row.energy,
+          row.error_bound, row.errors, row.iterations, row.seconds);
 }
 
 template <class Archive>
@@ -133,6 +140,8 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
           solution.stress_at_centroids, solution.out_of_plane_stress, solution.contact, solution.history);
   if (version >= 1) archive(solution.sweep);
   if (version >= 2) archive(solution.study);
+  if (version >= 3)
+    for (StudyRow& row : solution.study) serialize_asymmetry(archive, row.error_bound);
 }
 
 }  // namespace signorini
@@ -157,5 +166,5 @@ void serialize(Archive& archive, Verdict& verdict) {
 }  // namespace signorini::server
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
-CEREAL_CLASS_VERSION(signorini::Summary, 1)
-CEREAL_CLASS_VERSION(signorini::Solution, 2)
+CEREAL_CLASS_VERSION(signorini::Summary, 2)
+CEREAL_CLASS_VERSION(signorini::Solution, 3)

@@ -52,7 +52,7 @@ struct Totals {
       all += own;
       const double o = oscillation(t, law);
       oscillation_square += o * o;
-      shares[t] = own.gap + own.correction + o * o;
+      shares[t] = own.gap + own.correction + own.skew + o * o;
     }
     for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
       const double own = contact_term(problem, v, pressure, i);
@@ -71,10 +71,11 @@ template <typename Totals>
 ErrorBound bound_from(const Totals& totals) {
   ErrorBound bound;
   bound.parts = {std::sqrt(totals.all.gap), std::sqrt(totals.contact), std::sqrt(totals.oscillation_square),
-                 std::sqrt(totals.all.correction)};
+                 std::sqrt(totals.all.correction), std::sqrt(totals.all.skew)};
   const double of_pair =
       bound.parts.oscillation + std::sqrt(totals.oscillation_square + totals.all.gap + totals.contact);
-  bound.value = of_pair + bound.parts.equilibration;
+  // ‖σ − sym σ_h‖ ≤ ‖σ − σ*‖ + ‖σ* − sym σ_h‖, and the skew part of σ_h is orthogonal to both.
+  bound.value = std::hypot(of_pair + bound.parts.equilibration, bound.parts.asymmetry);
   const double stress = std::sqrt(totals.all.stress);
   bound.relative = stress > 0 ? bound.value / stress : (bound.value > 0 ? 1 : 0);
   bound.energy_upper = totals.all.energy;

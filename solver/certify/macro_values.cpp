@@ -87,14 +87,14 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
 
   // σ* is the stress with the data and the free one that brings it nearest to σ_h.
   std::vector<Block<3>> sigma(points, Block<3>::Zero(3, columns)), balanced = sigma;
-  Block<Eigen::Dynamic> skew(points, columns);
+  Block<Eigen::Dynamic> skew_part(points, columns);
   Eigen::Matrix3d free_matrix = Eigen::Matrix3d::Zero();
   Block<3> free_right = Block<3>::Zero(3, columns);
   for (int q = 0; q < points; ++q) {
     const MacroRule::Values& at = rule.values[q];
     const auto of_stress = stresses(map, at.stress);
     sigma[q].noalias() = of_stress.template topRows<3>() * given.stress;
-    skew.row(q).noalias() = of_stress.row(3) * given.stress;
+    skew_part.row(q).noalias() = of_stress.row(3) * given.stress;
     balanced[q].noalias() = (to_triangle * at.balanced).eval() * given.data;
     const Eigen::Matrix3d own = to_triangle * at.free;
     const Eigen::Matrix3d weighted = weight(q) * own.transpose() * law(q).compliance;
@@ -121,7 +121,8 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
 
   gap.resize(3 * points, columns);
   strain.resize(3 * points, columns);
-  correction.resize(4 * points, columns);
+  correction.resize(3 * points, columns);
+  skew.resize(points, columns);
   stress.resize(4 * points, columns);
   for (int q = 0; q < points; ++q) {
     const SymmetricLaw& own = law(q);
@@ -131,9 +132,9 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
         strains_of_v[q] + strains<kInner>(to_gradients * rule.values[q].inner_gradients) * inner;
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
     gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * balanced[q] - all);
-    correction.template middleRows<3>(4 * q) = root * own.factor.transpose() * (balanced[q] - sigma[q]);
+    correction.template middleRows<3>(3 * q) = root * own.factor.transpose() * (balanced[q] - sigma[q]);
     stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma[q];
-    correction.row(4 * q + 3) = stress.row(4 * q + 3) = of_skew * skew.row(q);
+    skew.row(q) = stress.row(4 * q + 3) = of_skew * skew_part.row(q);
   }
 }
 
@@ -158,6 +159,7 @@ MacroNorms::MacroNorms(const MacroRule& rule, const AffineMap& map, const Symmet
   gap = factor(values.gap);
   strain = factor(values.strain);
   correction = factor(values.correction.leftCols(data + functions));
+  skew = factor(values.skew.middleCols(data, functions));
   stress = factor(values.stress.middleCols(data, functions));
   inner = values.inner;
 }

@@ -66,7 +66,8 @@ struct MacroValues {
               std::span<const SymmetricLaw> laws);
 
   Block<Eigen::Dynamic> gap;         ///< C σ* − ε(v), in the norm of E
-  Block<Eigen::Dynamic> correction;  ///< σ* − σ_h, in the norm of C
+  Block<Eigen::Dynamic> correction;  ///< σ* − the symmetric part of σ_h, in the norm of C
+  Block<Eigen::Dynamic> skew;        ///< the skew part of σ_h, in the norm of C
   Block<Eigen::Dynamic> stress;      ///< σ_h, in the norm of C
   Block<Eigen::Dynamic> strain;      ///< ε(v), in the norm of E
   /// The values of v at the inner nodes beyond those of v_h.
@@ -79,8 +80,9 @@ struct MacroValues {
 struct MacroNorms {
   MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law);
 
-  Eigen::MatrixXd gap, correction, stress,
-      strain;  ///< correction: of (data, stress); stress: of stress alone
+  Eigen::MatrixXd gap, strain;
+  Eigen::MatrixXd correction;    ///< of (data, stress)
+  Eigen::MatrixXd skew, stress;  ///< of stress
   Eigen::MatrixXd inner;
 };
 

@@ -22,6 +22,7 @@ double value_or_zero(const std::unordered_map<int, double>& values, int key) {
 TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
   gap += other.gap;
   correction += other.correction;
+  skew += other.skew;
   stress += other.stress;
   energy += other.energy;
   return *this;

@@ -12,7 +12,8 @@ namespace signorini {
 /// What one triangle adds to the bound.
 struct TriangleSums {
   double gap = 0;         ///< ‖C σ* − ε(v)‖²_E
-  double correction = 0;  ///< ‖σ* − σ_h‖²_C
+  double correction = 0;  ///< ‖σ* − sym σ_h‖²_C
+  double skew = 0;        ///< ‖skew σ_h‖²_C
   double stress = 0;      ///< ‖σ_h‖²_C
   double energy = 0;      ///< ½ ‖ε(v)‖²_E − (f, v)
 

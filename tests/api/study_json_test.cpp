@@ -173,7 +173,7 @@ TEST(WriteStudy, HasARowAMeshAndSchemeAndTheFittedRates) {
   EXPECT_EQ(study["rows"][0],
             json::parse(R"({"scheme": "conforming", "size": 0.5, "triangles": 8, "unknowns": 37, "bound": 4.0,
                "energy_norm_error": 2.0, "relative": 0.0, "guaranteed": false, "constitutive": 0.0, "contact": 0.0,
-               "oscillation": 0.0, "equilibration": 0.0, "stress_effectivity": 2.0, "energy": -2.0, "iterations": 7,
+               "oscillation": 0.0, "equilibration": 0.0, "asymmetry": 0.0, "stress_effectivity": 2.0, "energy": -2.0, "iterations": 7,
                "seconds": 0.25})"));
   EXPECT_NEAR(study["rows"][1]["bound_rate"].get<double>(), 2, 1e-14);
   EXPECT_FALSE(study["rows"][2].contains("bound_rate"));
@@ -190,10 +190,10 @@ TEST(StudyCsv, HasTheSameColumns) {
   rows.erase(rows.begin());
   EXPECT_EQ(written_by([&](const Sink& sink) { return write_study_csv(rows, sink); }),
             "scheme,size,triangles,unknowns,bound,energy_norm_error,relative,guaranteed,constitutive,contact,"
-            "oscillation,equilibration,stress_effectivity,energy,iterations,seconds,error\r\n"
-            "conforming,0.5,32,37,1,0.5,0,false,0,0,0,0,2,-2,7,0.25,\r\n"
-            "nonconforming,0.5,8,37,8,4,0,false,0,0,0,0,2,-2,7,0.25,\r\n"
-            "nonconforming,,,,,,,,,,,,,,,,\"/study/sizes/1: it slips, away\"\r\n");
+            "oscillation,equilibration,asymmetry,stress_effectivity,energy,iterations,seconds,error\r\n"
+            "conforming,0.5,32,37,1,0.5,0,false,0,0,0,0,0,2,-2,7,0.25,\r\n"
+            "nonconforming,0.5,8,37,8,4,0,false,0,0,0,0,0,2,-2,7,0.25,\r\n"
+            "nonconforming,,,,,,,,,,,,,,,,,\"/study/sizes/1: it slips, away\"\r\n");
 }
 
 TEST(StudyTable, StandsInColumnsThatFitALine) {

@@ -13,6 +13,7 @@
 
 #include "api/examples.hpp"
 #include "child_process.hpp"
+#include "long_tests.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
 
@@ -264,7 +265,7 @@ TEST(Crash, BootsSoonWithManyJobs) {
   Daemon daemon({"--data-dir", directory.path(), "--queue-limit", "10000"});
   httplib::Client client("127.0.0.1", daemon.port());
   EXPECT_EQ(client.Get("/readyz")->status, 200);
-  EXPECT_LT(Clock::now() - begin, 2s);
+  EXPECT_LT(Clock::now() - begin, sanitized ? 20s : 2s);
   EXPECT_EQ(json::parse(client.Get("/v1/solves?limit=1000")->body).at("solves").size(), 1000u);
 }
 

@@ -155,10 +155,10 @@ TEST_F(Events, EndWithASolveThatIsCancelledWhileItWaits) {
   RawClient client = subscribe(id);
   std::vector<RawClient> clients;
   clients.push_back(std::move(client));
-  ASSERT_TRUE(listen_until(clients, 20s, [&] { return !events_in(clients[0].heard()).empty(); }));
+  ASSERT_TRUE(listen_until(clients, 60s, [&] { return !events_in(clients[0].heard()).empty(); }));
   EXPECT_TRUE(events_in(clients[0].heard())[0].data.at("phase").is_null());
   client_.Delete("/v1/solves/" + id);
-  ASSERT_TRUE(listen_until(clients, 20s, [&] { return clients[0].closed(); }));
+  ASSERT_TRUE(listen_until(clients, 60s, [&] { return clients[0].closed(); }));
   EXPECT_EQ(events_in(clients[0].heard()).back().name, "cancelled");
 }
 
@@ -166,9 +166,9 @@ TEST_F(Events, EndWithTheService) {
   const std::string id = submit("slow");
   std::vector<RawClient> clients;
   clients.push_back(subscribe(id));
-  ASSERT_TRUE(listen_until(clients, 20s, [&] { return !events_in(clients[0].heard()).empty(); }));
+  ASSERT_TRUE(listen_until(clients, 60s, [&] { return !events_in(clients[0].heard()).empty(); }));
   service_.stop();
-  ASSERT_TRUE(listen_until(clients, 20s, [&] { return clients[0].closed(); }));
+  ASSERT_TRUE(listen_until(clients, 60s, [&] { return clients[0].closed(); }));
   EXPECT_EQ(events_in(clients[0].heard()).back().name, "cancelled");
 }
 
@@ -188,7 +188,7 @@ TEST_F(Events, AreNotHeldUpByAClientThatDoesNotListen) {
   RawClient client = subscribe(id);
   std::vector<RawClient> clients;
   clients.push_back(std::move(client));
-  ASSERT_TRUE(listen_until(clients, 20s, [&] { return !events_in(clients[0].heard()).empty(); }));
+  ASSERT_TRUE(listen_until(clients, 60s, [&] { return !events_in(clients[0].heard()).empty(); }));
   client_.Delete("/v1/solves/" + blocker);
   ASSERT_TRUE(listen_until(clients, 60s, [&] { return clients[0].closed(); }));
   const std::vector<Event> events = events_in(clients[0].heard());
@@ -237,7 +237,7 @@ TEST_F(FewEvents, AreRefusedBeyondTheLimitUntilSomebodyLeaves) {
   std::vector<RawClient> clients;
   for (int i = 0; i < 2; ++i) clients.push_back(subscribe(id));
   ASSERT_TRUE(
-      listen_until(clients, 20s, [&] { return clients[0].status() == 200 && clients[1].status() == 200; }));
+      listen_until(clients, 60s, [&] { return clients[0].status() == 200 && clients[1].status() == 200; }));
   const auto reply = get("/v1/solves/" + id + "/events");
   const json refusal = expect_problem(reply, 503);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("2 streams"), std::string::npos) << refusal;
