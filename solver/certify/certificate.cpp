@@ -67,19 +67,32 @@ struct Totals {
   Eigen::VectorXd shares;
 };
 
+/// With e = σ − σ*, b = E ε(u − v), δ = σ* − sym σ_h and the oscillation o, the identity of σ* is
+///
+///     ‖e‖² + ‖b‖² + contact terms  ≤  ‖e − b‖² + contact + 2 o ‖b‖  ≤  P²,   e − b = E ε(v) − σ*,
+///
+/// hence ‖e + b‖² ≤ 2 P² − ‖e − b‖² (Prager, Synge 1947). For sym σ_h = σ* − δ that is
+///
+///     ‖e + δ‖² + ‖b‖² + contact terms  ≤  P² + ‖δ‖² + 2 (e, δ),   2 e = (e + b) + (e − b),
+///
+/// and the skew part of σ_h is orthogonal to e + δ.
 template <typename Totals>
 ErrorBound bound_from(const Totals& totals) {
+  const auto& [gap, direct_gap, correction, skew, stress, energy] = totals.all;
   ErrorBound bound;
-  bound.parts = {std::sqrt(totals.all.gap), std::sqrt(totals.contact), std::sqrt(totals.oscillation_square),
-                 std::sqrt(totals.all.correction), std::sqrt(totals.all.skew)};
+  bound.parts = {std::sqrt(gap), std::sqrt(totals.contact), std::sqrt(totals.oscillation_square),
+                 std::sqrt(correction), std::sqrt(skew)};
   const double of_pair =
-      bound.parts.oscillation + std::sqrt(totals.oscillation_square + totals.all.gap + totals.contact);
-  // ‖σ − sym σ_h‖ ≤ ‖σ − σ*‖ + ‖σ* − sym σ_h‖, and the skew part of σ_h is orthogonal to both.
-  bound.value = std::hypot(of_pair + bound.parts.equilibration, bound.parts.asymmetry);
-  const double stress = std::sqrt(totals.all.stress);
-  bound.relative = stress > 0 ? bound.value / stress : (bound.value > 0 ? 1 : 0);
-  bound.energy_upper = totals.all.energy;
-  bound.energy_lower = bound.energy_upper - of_pair * of_pair / 2;
+      bound.parts.oscillation + std::sqrt(totals.oscillation_square + gap + totals.contact);
+  const double p_square = of_pair * of_pair;
+  // (e − b, δ) from ‖e − b + δ‖² = ‖E ε(v) − sym σ_h‖².
+  const double along = bound.parts.equilibration * std::sqrt(2 * p_square - gap),
+               across = (direct_gap - gap - correction) / 2;
+  bound.value = std::sqrt(p_square + correction + along + across + skew);
+  const double of_stress = std::sqrt(stress);
+  bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
+  bound.energy_upper = energy;
+  bound.energy_lower = energy - p_square / 2;
   return bound;
 }
 

@@ -104,14 +104,20 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law) {
       return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
     };
     const auto stresses = z.head(norms->correction.cols());
-    return {square(norms->gap, z), square(norms->correction, stresses), square(norms->skew, given.stress),
+    return {square(norms->gap, z),
+            square(norms->direct_gap, z),
+            square(norms->correction, stresses),
+            square(norms->skew, given.stress),
             square(norms->stress, given.stress),
             square(norms->strain, z) / 2 - work_of_load(t, map, plain_, given, norms->inner * z)};
   }
   const MacroRule& rule = lifted ? composite_ : plain_;
   if (lifted) given.lifted = lifted_strains(t, map, rule);
   const MacroValues<1> values(rule, map, given, laws_at(rule, map, law));
-  return {values.gap.squaredNorm(), values.correction.squaredNorm(), values.skew.squaredNorm(),
+  return {values.gap.squaredNorm(),
+          values.direct_gap.squaredNorm(),
+          values.correction.squaredNorm(),
+          values.skew.squaredNorm(),
           values.stress.squaredNorm(),
           values.strain.squaredNorm() / 2 - work_of_load(t, map, rule, given, values.inner)};
 }

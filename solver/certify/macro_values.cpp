@@ -120,6 +120,7 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
   inner = inner_matrix.ldlt().solve(inner_right);
 
   gap.resize(3 * points, columns);
+  direct_gap.resize(3 * points, columns);
   strain.resize(3 * points, columns);
   correction.resize(3 * points, columns);
   skew.resize(points, columns);
@@ -132,6 +133,7 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
         strains_of_v[q] + strains<kInner>(to_gradients * rule.values[q].inner_gradients) * inner;
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
     gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * balanced[q] - all);
+    direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma[q] - all);
     correction.template middleRows<3>(3 * q) = root * own.factor.transpose() * (balanced[q] - sigma[q]);
     stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma[q];
     skew.row(q) = stress.row(4 * q + 3) = of_skew * skew_part.row(q);
@@ -157,6 +159,7 @@ MacroNorms::MacroNorms(const MacroRule& rule, const AffineMap& map, const Symmet
         .triangularView<Eigen::Upper>();
   };
   gap = factor(values.gap);
+  direct_gap = factor(values.direct_gap);
   strain = factor(values.strain);
   correction = factor(values.correction.leftCols(data + functions));
   skew = factor(values.skew.middleCols(data, functions));

@@ -66,6 +66,7 @@ struct MacroValues {
               std::span<const SymmetricLaw> laws);
 
   Block<Eigen::Dynamic> gap;         ///< C σ* − ε(v), in the norm of E
+  Block<Eigen::Dynamic> direct_gap;  ///< C sym σ_h − ε(v), in the norm of E
   Block<Eigen::Dynamic> correction;  ///< σ* − the symmetric part of σ_h, in the norm of C
   Block<Eigen::Dynamic> skew;        ///< the skew part of σ_h, in the norm of C
   Block<Eigen::Dynamic> stress;      ///< σ_h, in the norm of C
@@ -80,7 +81,7 @@ struct MacroValues {
 struct MacroNorms {
   MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law);
 
-  Eigen::MatrixXd gap, strain;
+  Eigen::MatrixXd gap, direct_gap, strain;
   Eigen::MatrixXd correction;    ///< of (data, stress)
   Eigen::MatrixXd skew, stress;  ///< of stress
   Eigen::MatrixXd inner;

@@ -21,6 +21,7 @@ double value_or_zero(const std::unordered_map<int, double>& values, int key) {
 
 TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
   gap += other.gap;
+  direct_gap += other.direct_gap;
   correction += other.correction;
   skew += other.skew;
   stress += other.stress;
@@ -67,8 +68,9 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law) const {
       const Tensor<1> rise = gradient<1>(inverse, potential * rule.gradients[q].transpose());
       curl << rise[1], -rise[0];
     }
-    const Tensor<1> gap = compliance * (sigma + curl) - slope;
+    const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * curl;
     sums.gap += weight * gap.dot(stiffness * gap);
+    sums.direct_gap += weight * direct_gap.dot(stiffness * direct_gap);
     sums.correction += weight * curl.dot(compliance * curl);
     sums.stress += weight * sigma.dot(compliance * sigma);
     sums.energy += weight * (0.5 * slope.dot(stiffness * slope) - problem_.problem.body(0, x) * value[0]);
@@ -76,7 +78,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law) const {
   return sums;
 }
 
-/// The potential of the pressure, extended by 0 to all points that are not on Γ_C.
+/// The potential of the pressure, which falls into the triangle like the square of the barycentric
+/// coordinates: it changes sign from edge to edge, and so its least extension falls fast.
 Quadratic<1> MembraneSums::potential_on(int t) const {
   Quadratic<1> values = Quadratic<1>::Zero();
   if (pressure_.potential_at_points.empty()) return values;
@@ -86,7 +89,7 @@ Quadratic<1> MembraneSums::potential_on(int t) const {
     const int edge = problem_.mesh.triangle_edges[t][e];
     values[3 + e] = pressure_.potential_at_middles.contains(edge)
                         ? pressure_.potential_at_middles.at(edge)
-                        : (values[(e + 1) % 3] + values[(e + 2) % 3]) / 2;
+                        : (values[(e + 1) % 3] + values[(e + 2) % 3]) / 4;
   }
   return values;
 }

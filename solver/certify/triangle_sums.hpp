@@ -12,6 +12,7 @@ namespace signorini {
 /// What one triangle adds to the bound.
 struct TriangleSums {
   double gap = 0;         ///< ‖C σ* − ε(v)‖²_E
+  double direct_gap = 0;  ///< ‖C sym σ_h − ε(v)‖²_E
   double correction = 0;  ///< ‖σ* − sym σ_h‖²_C
   double skew = 0;        ///< ‖skew σ_h‖²_C
   double stress = 0;      ///< ‖σ_h‖²_C

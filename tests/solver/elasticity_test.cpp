@@ -367,7 +367,9 @@ TEST(Reactions, BalanceTheMomentsOfLoadsThatVaryWithinATriangle) {
     for (const Reaction& part : solution.summary.parts) {
       moment += part.moment;
       // ∫ (x t_y − y t_x) over x = 0, y from 0 to 1.
-      if (part.part == "left") EXPECT_NEAR(part.moment, -1. / 3, 1e-12);
+      if (part.part == "left") {
+        EXPECT_NEAR(part.moment, -1. / 3, 1e-12);
+      }
     }
     // −∫ (x f_y − y f_x) over the block from (0, 0) to (2, 1).
     EXPECT_NEAR(moment, 8. / 3 + 2. / 3, 1e-10);
