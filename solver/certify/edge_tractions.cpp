@@ -84,20 +84,22 @@ void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
   }
 }
 
-/// The linear part of the traction that turns an edge, and the couples as the rotation took them.
+/// The couples as the rotation took them, and the traction's linear part, whose couple is among them.
 void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
   const Mesh& mesh = problem_.mesh;
   for (int t = 0; t < problem_.triangles(); ++t) moments.col(t).array() -= problem_.couples[t] / 3;
   const TractionField traction(problem_.problem, mesh);
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (!traction.acts_on(edge)) continue;
-    const double couple = couple_of_traction(traction, mesh, edge);
     const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
     const int from = (e + 1) % 3, to = (e + 2) % 3;
-    const auto corners = mesh.corners(t);
-    const Vector turning = traction_with_couple(couple, corners[to] - corners[from]);
-    at(edge).col(0) -= turning;
-    at(edge).col(1) += turning;
+    const bool forward = mesh.triangles[t][from] == mesh.edges[edge][0];
+    for (int c = 0; c < 2; ++c) {
+      const LocalVector linear =
+          project_onto_edge(1, edge_moments(1, [&](double s) { return traction(edge, c, s); }));
+      at(edge).row(c) << linear[forward ? 0 : 1], linear[forward ? 1 : 0];
+    }
+    const double couple = couple_of_traction(traction, mesh, edge);
     for (const int z : {from, to}) moments(z, t) -= couple / 2;
   }
 }

@@ -6,7 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "fem/couple.hpp"
+#include "certify/rigid_remainder.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
@@ -20,46 +20,59 @@ double longest_edge(const std::array<Point, 3>& corners) {
       {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
 }
 
-/// ‖∇w‖ ≤ korn ‖ε(w)‖ for all w whose rotation has mean 0: √2 / β (Horgan, Payne 1983), with the inf-sup
-/// constant β of the divergence at least sin(α / 4) for the smallest angle α (the bound of Horgan and Payne
-/// from the centre of the inscribed circle; Costabel, Dauge 2015).
-double korn(const std::array<Point, 3>& corners) {
-  double largest_cosine = -1;
-  for (int z = 0; z < 3; ++z) {
-    const Vector a = corners[(z + 1) % 3] - corners[z], b = corners[(z + 2) % 3] - corners[z];
-    largest_cosine = std::max(largest_cosine, a.normalized().dot(b.normalized()));
+/// Column z: (f, φ_z).
+template <int D>
+Eigen::Matrix<double, D, 3> moments_of_hats(const Discretization& problem, int t) {
+  Eigen::Matrix<double, D, 3> moments = Eigen::Matrix<double, D, 3>::Zero();
+  const VectorField& body = problem.problem.body;
+  if (body.size() == 0) return moments;
+  const AffineMap map(problem.mesh.corners(t));
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point& reference = triangle_rule().points[q];
+    const LocalVector hats = triangle_basis(1, reference);
+    for (int c = 0; c < D; ++c)
+      moments.row(c) +=
+          triangle_rule().weights[q] * map.determinant * body(c, map(reference)) * hats.transpose();
   }
-  return std::numbers::sqrt2 / std::sin(std::acos(std::min(1., largest_cosine)) / 4);
+  return moments;
+}
+
+/// ‖w − w̄‖ ≤ remainder ‖∇w‖ for a membrane, ‖w − r‖ ≤ remainder ‖ε(w)‖ for an elastic body.
+template <int D>
+double remainder(const std::array<Point, 3>& corners) {
+  if constexpr (D == 2)
+    return rigid_remainder(corners);
+  else
+    return longest_edge(corners) / std::numbers::pi;
+}
+
+template <int D>
+double remainder_on_edge(const std::array<Point, 3>& corners, int e) {
+  if constexpr (D == 2) return rigid_remainder_on_edge(corners, e);
+  const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm(), pi = std::numbers::pi;
+  return longest_edge(corners) * std::sqrt(length * 2 / AffineMap(corners).determinant * (1 / pi + 1) / pi);
 }
 
 }  // namespace
 
 template <int D>
 Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t) {
-  const Eigen::VectorXd moments = problem.load.col(t);
   const double area = AffineMap(problem.mesh.corners(t)).determinant / 2;
-  if (problem.spaces().order == 0) {
-    const Eigen::Matrix<double, D, 3> mean = (moments / area).replicate(1, 3);
-    if constexpr (D == 2)
-      return mean + load_with_couple(problem.couples[t], problem.mesh.corners(t));
-    else
-      return mean;
-  }
+  if (D == 1 && problem.spaces().order == 0) return (problem.load.col(t) / area).template replicate<1, 3>();
+  const Eigen::Matrix<double, D, 3> moments =
+      problem.spaces().order == 1 ? problem.load.col(t).reshaped(D, 3) : moments_of_hats<D>(problem, t);
   // The inverse of the mass matrix area/12 (1 + δ_ij) is 12/area (δ_ij − 1/4).
-  const Eigen::Matrix<double, D, 3> own = moments.reshaped(D, 3);
-  return 12 / area * (own.colwise() - own.rowwise().sum() / 4);
+  return 12 / area * (moments.colwise() - moments.rowwise().sum() / 4);
 }
 
 template <int D>
 double Oscillation<D>::operator()(int t, LawField<D>& law) const {
   const auto corners = problem_.mesh.corners(t);
-  const double h = longest_edge(corners) * (D == 2 ? korn(corners) : 1), pi = std::numbers::pi;
-  double sum = h / pi * of_load(t);
-  for (const int edge : problem_.mesh.triangle_edges[t])
-    if (traction_.acts_on(edge))
-      sum += h *
-             std::sqrt(problem_.mesh.length(edge) * 2 / AffineMap(corners).determinant * (1 / pi + 1) / pi) *
-             of_traction(edge);
+  const double load = of_load(t);
+  double sum = load > 0 ? remainder<D>(corners) * load : 0;
+  for (int e = 0; e < 3; ++e)
+    if (const int edge = problem_.mesh.triangle_edges[t][e]; traction_.acts_on(edge))
+      sum += remainder_on_edge<D>(corners, e) * of_traction(edge);
   if (sum == 0) return 0;
   const int points = problem_.element.has_constant_material() ? 1 : TriangleRule::size;
   double softest = 0;
@@ -92,15 +105,10 @@ double Oscillation<D>::of_load(int t) const {
 /// ‖t − Πt‖ on an edge.
 template <int D>
 double Oscillation<D>::of_traction(int edge) const {
-  const int order = problem_.spaces().order;
-  const auto& [a, b] = problem_.mesh.edges[edge];
-  const Vector turning = problem_.spaces().leaves_couples()
-                             ? traction_with_couple(couple_of_traction(traction_, problem_.mesh, edge),
-                                                    problem_.mesh.points[b] - problem_.mesh.points[a])
-                             : Vector(Vector::Zero());
+  const int order = D == 2 ? 1 : problem_.spaces().order;
   double square = 0;
   for (int c = 0; c < D; ++c) {
-    const auto t = [&](double s) { return traction_(edge, c, s) - (2 * s - 1) * turning[c]; };
+    const auto t = [&](double s) { return traction_(edge, c, s); };
     const LocalVector projection = project_onto_edge(order, edge_moments(order, t));
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = edge_rule().points[q], rest = t(s) - projection.dot(edge_basis(order, s));

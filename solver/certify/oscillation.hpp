@@ -6,8 +6,9 @@
 
 namespace signorini {
 
-/// Column z: Πf at corner z of a triangle, the load that σ_h is in equilibrium with: the projection onto P_k,
-/// and where that has no rotations the linear load with the couple of f besides.
+/// Column z: Πf at corner z of a triangle, the load that σ* is in equilibrium with: the projection onto P_k
+/// for a membrane, onto P1 for an elastic body, of which σ_h is in equilibrium with the force and the moment
+/// at least.
 template <int D>
 Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t);
 
@@ -16,8 +17,9 @@ Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t);
 ///     (f − Πf, w) + <t − Πt, w>  ≤  oscillation · ‖w‖_E
 ///
 /// on one triangle, for every displacement w. Π keeps what a rigid motion of the triangle sees, so that w
-/// counts only up to one: by the inequality of Payne and Weinberger, ‖w − w̄‖ ≤ h/π ‖∇w‖, and from it the
-/// trace inequality ‖w − w̄‖²_e ≤ |e|/|T| h² (1/π² + 1/π) ‖∇w‖².
+/// counts only up to one: rigid_remainder() for an elastic body. For a membrane it is the inequality of Payne
+/// and Weinberger, ‖w − w̄‖ ≤ h/π ‖∇w‖, and the trace inequality that follows from it, ‖w − w̄‖²_e ≤
+/// |e|/|T| h² (1/π² + 1/π) ‖∇w‖².
 template <int D>
 class Oscillation {
  public:

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "fem/traction_field.hpp"
 
 namespace signorini {
@@ -17,12 +15,5 @@ inline Vector turned_left(const Vector& x) {
 
 /// ∫ (x − x_e)^⊥ · t over an edge with the middle x_e, for a body with two components.
 double couple_of_traction(const TractionField& traction, const Mesh& mesh, int edge);
-
-/// Column z: at corner z of a triangle, the linear load without force that has the couple.
-Eigen::Matrix<double, 2, 3> load_with_couple(double couple, const std::array<Point, 3>& corners);
-
-/// The linear traction without force that has the couple, at the second of the ends of an edge; at the first
-/// it is the negative.
-Vector traction_with_couple(double couple, const Vector& edge);
 
 }  // namespace signorini

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 /// 20, or 1000 in the long form.
 int kills() {
-  return std::getenv("SIGNORINI_LONG_TESTS") == nullptr ? 20 : 1000;
+  return long_tests() ? 1000 : 20;
 }
 
 /// Takes a millisecond, or some tens of them, so that some solves run whenever the service is killed.
