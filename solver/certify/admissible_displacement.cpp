@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/potential.hpp"
+#include "certify/relaxation.hpp"
 
 namespace signorini {
 namespace {
@@ -34,8 +35,7 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
       components_(problem.spaces().components),
       points_(displacement_at_corners(problem, solution)),
       scale_(points_.cwiseAbs().maxCoeff()) {
-  const Eigen::VectorXd clearance =
-      problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
+  const Eigen::VectorXd clearance = clearance_of(coupling);
   constrain_points(clearance);
   set_middles(coupling);
   for (const BoundaryPart& part : problem.mesh.boundary) {
@@ -43,6 +43,36 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
     if (condition_on<Roller>(problem.problem, part.name)) roll(part);
   }
   for (const ContactEdge& contact : problem.clearance.edges) meet(contact, clearance);
+}
+
+Eigen::VectorXd AdmissibleDisplacement::clearance_of(const Eigen::VectorXd& coupling) const {
+  return problem_.clearance.clearance(coupling.tail(problem_.traces.contact_unknowns()));
+}
+
+void AdmissibleDisplacement::relax(const Eigen::VectorXd& coupling, Progress& progress) {
+  const Mesh& mesh = problem_.mesh;
+  const Eigen::VectorXd clearance = clearance_of(coupling);
+  QuadraticValues values{points_.row(0), middles_.row(0), std::vector<bool>(mesh.points.size()),
+                         std::vector<bool>(mesh.edges.size())};
+  for (const auto& [point, value] : fixed_points_) values.held_points[point] = true;
+  for (const BoundaryPart& part : mesh.boundary)
+    if (condition_on<Fixed>(problem_.problem, part.name))
+      for (const int edge : part.edges) values.held_middles[edge] = true;
+  const auto touches = [&](const ContactEdge& contact, int k) { return clearance[contact.rows[k]] <= 0; };
+  for (const ContactEdge& contact : problem_.clearance.edges) {
+    values.held_middles[contact.edge] = touches(contact, 0) && touches(contact, 1);
+    for (int k = 0; k < 2; ++k)
+      if (touches(contact, k)) values.held_points[mesh.edges[contact.edge][k]] = true;
+  }
+  signorini::relax(problem_, values, progress);
+  points_.row(0) = values.points;
+  middles_.row(0) = values.middles;
+  for (const ContactEdge& contact : problem_.clearance.edges)
+    for (int k = 0; k < 2; ++k)
+      if (const double lack = -room(contact, k); lack > 0 && !touches(contact, k))
+        points_.col(mesh.edges[contact.edge][k]) -= lack * direction(contact);
+  for (const ContactEdge& contact : problem_.clearance.edges)
+    if (!values.held_middles[contact.edge]) lower_below(contact);
 }
 
 const Lift* AdmissibleDisplacement::lift(int edge) const {

@@ -8,6 +8,7 @@
 #include "certify/local_fields.hpp"
 #include "certify/point_constraints.hpp"
 #include "fem/discretization.hpp"
+#include "progress.hpp"
 #include "solution.hpp"
 
 namespace signorini {
@@ -24,6 +25,10 @@ class AdmissibleDisplacement {
   /// `coupling`: the unknowns of the trace space.
   AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
                          const Eigen::VectorXd& coupling);
+
+  /// Lowers the energy of a membrane's displacement, which stays admissible: see relaxation.hpp. What is lifted
+  /// stays as it is, and so do the values that touch.
+  void relax(const Eigen::VectorXd& coupling, Progress& progress);
 
   template <int D>
   Quadratic<D> on(int t) const {
@@ -59,6 +64,7 @@ class AdmissibleDisplacement {
   using Values = std::function<Eigen::VectorXd(double s)>;
 
   void set_middles(const Eigen::VectorXd& coupling);
+  Eigen::VectorXd clearance_of(const Eigen::VectorXd& coupling) const;
   void constrain_points(const Eigen::VectorXd& clearance);
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "certify/least_potential.hpp"
 #include "certify/oscillation.hpp"
 #include "certify/triangle_sums.hpp"
 
@@ -104,10 +105,11 @@ void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
 
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
                     Progress& progress) {
-  const AdmissibleDisplacement v(problem, solution, coupling);
+  AdmissibleDisplacement v(problem, solution, coupling);
+  if (problem.spaces().components == 1) v.relax(coupling, progress);
   const Eigen::VectorXd clearance =
       problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
-  const ContactPressure pressure(problem, solution.stress, clearance);
+  ContactPressure pressure(problem, solution.stress, clearance);
   Certificate certificate;
   std::vector<std::string> unmet = v.unmet();
   add(unmet, pressure.unmet);
@@ -120,6 +122,7 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     certificate.squares = std::move(totals.shares);
   };
   if (problem.spaces().components == 1) {
+    minimize_potential(problem, solution, v, clearance, pressure, progress);
     finish(Totals<1, MembraneSums>(problem, v, pressure, MembraneSums(problem, solution, v, pressure),
                                    progress));
   } else {

@@ -20,14 +20,14 @@ double sum_of_forces(const Chain& chain) {
 
 /// Ψ at the nodes of a chain, in the direction in which it runs, and its mean over each link.
 struct Potential {
-  Potential(const Chain& given, const Chain& admissible, bool held_at_begin)
-      : at_nodes(given.size() + 1, 0.) {
+  Potential(const Chain& given, const AdmissibleChain& chain) : at_nodes(given.size() + 1, 0.) {
+    const Chain& admissible = chain.links();
     for (std::size_t i = 0; i < given.size(); ++i)
       at_nodes[i + 1] = at_nodes[i] + admissible[i].force() - given[i].force();
-    // It vanishes where the chain ends freely.
-    if (held_at_begin) {
-      const double rest = at_nodes.back();
-      for (double& value : at_nodes) value -= rest;
+    if (chain.is_held(false)) {
+      // It vanishes where the chain ends freely, and where nothing was moved.
+      const double begin = chain.is_held(true) ? -chain.force_of_support() : -at_nodes.back();
+      for (double& value : at_nodes) value += begin;
     }
     for (std::size_t i = 0; i < given.size(); ++i)
       means.push_back(at_nodes[i] + admissible[i].forces[0] - given[i].forces[0]);
@@ -51,7 +51,7 @@ ContactPressure::ContactPressure(const Discretization& problem, const Eigen::Mat
   for (const Chain& given : pressure_chains(problem, stress)) {
     const AdmissibleChain chain = admissible(problem, given, clearance);
     keep(problem, given, chain.links());
-    const Potential potential(given, chain.links(), chain.is_held(false));
+    const Potential potential(given, chain);
     const double scale = kRounding * sum_of_forces(given);
     const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
     if (free_ends && std::abs(potential.at_nodes.back()) > 100 * scale) refuse(problem, given, "pulls");

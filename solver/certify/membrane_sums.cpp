@@ -78,18 +78,13 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law) const {
   return sums;
 }
 
-/// The potential of the pressure, which falls into the triangle like the square of the barycentric
-/// coordinates: it changes sign from edge to edge, and so its least extension falls fast.
+/// The potential of the pressure.
 Quadratic<1> MembraneSums::potential_on(int t) const {
   Quadratic<1> values = Quadratic<1>::Zero();
   if (pressure_.potential_at_points.empty()) return values;
-  for (int z = 0; z < 3; ++z)
-    values[z] = value_or_zero(pressure_.potential_at_points, problem_.mesh.triangles[t][z]);
-  for (int e = 0; e < 3; ++e) {
-    const int edge = problem_.mesh.triangle_edges[t][e];
-    values[3 + e] = pressure_.potential_at_middles.contains(edge)
-                        ? pressure_.potential_at_middles.at(edge)
-                        : (values[(e + 1) % 3] + values[(e + 2) % 3]) / 4;
+  for (int k = 0; k < 3; ++k) {
+    values[k] = value_or_zero(pressure_.potential_at_points, problem_.mesh.triangles[t][k]);
+    values[3 + k] = value_or_zero(pressure_.potential_at_middles, problem_.mesh.triangle_edges[t][k]);
   }
   return values;
 }

@@ -101,7 +101,10 @@ bool AdmissibleChain::is_held(bool at_end) const {
 
 /// Across a node, from the edge before it to the edge behind it.
 void AdmissibleChain::move(std::size_t node, double force) {
-  if (node > 0) chain_[node - 1].forces[1] -= force;
+  if (node > 0)
+    chain_[node - 1].forces[1] -= force;
+  else
+    force_of_support_ += force;
   if (node < chain_.size()) chain_[node].forces[0] += force;
 }
 

@@ -45,6 +45,9 @@ class AdmissibleChain {
   /// An end of the chain lies on Γ_D.
   bool is_held(bool at_end) const;
 
+  /// What Γ_D gave to the chain where it begins.
+  double force_of_support() const { return force_of_support_; }
+
  private:
   void move(std::size_t node, double force);
   void move_at_node(std::size_t node, const Eigen::VectorXd& clearance, Transition transition);
@@ -55,6 +58,7 @@ class AdmissibleChain {
 
   const Discretization& problem_;
   Chain chain_;
+  double force_of_support_ = 0;
 };
 
 }  // namespace signorini

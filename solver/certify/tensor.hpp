@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include <Eigen/LU>
 
 #include "problem/material.hpp"
@@ -19,6 +17,7 @@ using TensorMap = Eigen::Matrix<double, 2 * D, 2 * D>;
 /// C and E = C⁻¹ at a point, both on all tensors (see compliance_at).
 template <int D>
 struct Law {
+  Law() : compliance(TensorMap<D>::Zero()), stiffness(TensorMap<D>::Zero()) {}
   explicit Law(const TensorMap<D>& c) : compliance(c), stiffness(c.inverse()) {}
 
   TensorMap<D> compliance, stiffness;
@@ -32,14 +31,15 @@ class LawField {
 
   /// Valid until the next call.
   const Law<D>& operator()(const Point& x) {
-    if (!last_ || !constant_) last_.emplace(TensorMap<D>(compliance_at(material_, x)));
-    return *last_;
+    if (!known_ || !constant_) last_ = Law<D>(TensorMap<D>(compliance_at(material_, x)));
+    known_ = true;
+    return last_;
   }
 
  private:
   const Material& material_;
-  bool constant_;
-  std::optional<Law<D>> last_;
+  bool constant_, known_ = false;
+  Law<D> last_;
 };
 
 }  // namespace signorini

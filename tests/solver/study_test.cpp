@@ -139,7 +139,7 @@ TEST(Study, MeasuresElasticErrorsInTheNormOfTheLaw) {
 
 TEST(Study, AMeshThatRefinesItselfHasARowALevel) {
   Study study{both, {{"/study/adaptive", MeshRequest(Divisions{4, 2})}}, exact_edge()};
-  study.meshes[0].request.adaptive = Adaptive{0.05, 100'000};
+  study.meshes[0].request.adaptive = Adaptive{0.02, 100'000};
   const std::vector<StudyRow> rows = run(problems::SignoriniEdge::problem(Scheme::conforming, 1), study);
   std::array<int, 2> levels{};
   for (const StudyRow& row : rows) {
@@ -153,7 +153,7 @@ TEST(Study, AMeshThatRefinesItselfHasARowALevel) {
   }
   EXPECT_GE(levels[0], 2);
   EXPECT_GE(levels[1], 4);
-  EXPECT_LE(rows.back().error_bound->relative, 0.05);
+  EXPECT_LE(rows.back().error_bound->relative, 0.02);
   EXPECT_GE(fitted_rate(rows, Scheme::nonconforming, bound_of).value(), 0.9);
 }
 
