@@ -26,8 +26,8 @@ class AdmissibleDisplacement {
   AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
                          const Eigen::VectorXd& coupling);
 
-  /// Lowers the energy of a membrane's displacement, which stays admissible: see relaxation.hpp. What is lifted
-  /// stays as it is, and so do the values that touch.
+  /// Lowers the energy of a membrane's displacement, which stays admissible: see relaxation.hpp. What is
+  /// lifted stays as it is, and so do the values that touch.
   void relax(const Eigen::VectorXd& coupling, Progress& progress);
 
   template <int D>

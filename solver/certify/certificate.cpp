@@ -46,12 +46,13 @@ struct Totals {
          Sums sums, Progress& progress)
       : shares(problem.triangles()) {
     LawField<D> law(problem.problem.material);
+    LoadValues<D> load(problem);
     const Oscillation<D> oscillation(problem);
     for (int t = 0; t < problem.triangles(); ++t) {
       progress.check_in(t);
-      const TriangleSums own = sums(t, law);
+      const TriangleSums own = sums(t, law, load);
       all += own;
-      const double o = oscillation(t, law);
+      const double o = oscillation(t, law, load);
       oscillation_square += o * o;
       shares[t] = own.gap + own.correction + own.skew + o * o;
     }

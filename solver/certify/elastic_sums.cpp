@@ -1,4 +1,3 @@
-#include "certify/oscillation.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
@@ -24,7 +23,8 @@ ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution
       shapes_(problem) {}
 
 /// The data of the macro-element: J⁻¹ t |e| for the tractions, −det J J⁻¹ Πf for the divergence.
-Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const AffineMap& map) const {
+Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const AffineMap& map,
+                                                                   LoadValues<2>& load) const {
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const auto corners = problem_.mesh.corners(t);
   Eigen::Matrix<double, MacroElement::kData, 1> data;
@@ -33,13 +33,13 @@ Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const 
     const Eigen::Matrix2d ends = inverse * tractions_.on(t, e) * length;
     data.segment<4>(4 * e) << ends.col(0), ends.col(1);
   }
-  const Eigen::Matrix<double, 2, 3> load = -map.determinant * inverse * discrete_load<2>(problem_, t);
-  data.tail<6>() = load.reshaped();
+  const Eigen::Matrix<double, 2, 3> divergence = -map.determinant * inverse * load.projection(t);
+  data.tail<6>() = divergence.reshaped();
   return data;
 }
 
-ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
-  return {data_of(t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map, LoadValues<2>& load) const {
+  return {data_of(t, map, load), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
 }
 
 /// The operators of the triangle's shape, or null.
@@ -91,9 +91,9 @@ double ElasticSums::work_of_load(int t, const AffineMap& map, const MacroRule& r
   return work;
 }
 
-TriangleSums ElasticSums::operator()(int t, LawField<2>& law) {
+TriangleSums ElasticSums::operator()(int t, LawField<2>& law, LoadValues<2>& load) {
   const AffineMap map(problem_.mesh.corners(t));
-  Given given = given_on(t, map);
+  Given given = given_on(t, map, load);
   const bool lifted = v_.is_lifted(t);
   const MacroNorms* norms = lifted ? nullptr : norms_of(t, map, law);
   if (norms) {

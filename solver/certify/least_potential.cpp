@@ -84,7 +84,8 @@ class Region {
 
   void leave_out_traction(const Discretization& problem) {
     for (const BoundaryPart& part : mesh_.boundary) {
-      if (condition_on<Fixed>(problem.problem, part.name) || condition_on<Contact>(problem.problem, part.name))
+      if (condition_on<Fixed>(problem.problem, part.name) ||
+          condition_on<Contact>(problem.problem, part.name))
         continue;
       for (const int edge : part.edges) {
         numbers_[mesh_.points.size() + edge] = -1;
@@ -214,12 +215,11 @@ class Minimization {
     if (std::ranges::all_of(side.nodes, [](int node) { return node < 0; })) return;
     sides_.push_back(side);
     const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;
-    for (int end = 0; end < 2; ++end)
-      sides_.back().kept[end] = open || pressure_.at_ends[i][end] == 0;
+    for (int end = 0; end < 2; ++end) sides_.back().kept[end] = open || pressure_.at_ends[i][end] == 0;
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = edge_rule().points[q];
-      const double room = edge_rule().weights[q] * problem_.mesh.length(contact.edge) *
-                          std::max(0., v_.room(contact, s));
+      const double room =
+          edge_rule().weights[q] * problem_.mesh.length(contact.edge) * std::max(0., v_.room(contact, s));
       for (int k = 0; k < 3; ++k)
         if (side.nodes[k] >= 0) {
           const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k);

@@ -30,7 +30,9 @@ TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
 }
 
 MembraneSums::Rule::Rule(const Spaces& spaces, int cuts)
-    : points(composite_rule(cuts)), stress(spaces, points_of(points)) {
+    : points(composite_rule(cuts)),
+      stress(spaces, points_of(points)),
+      balance(spaces_of(Scheme::conforming, 1), points_of(points)) {
   for (const auto& [point, weight] : points) {
     basis.push_back(quadratic_basis(point));
     gradients.push_back(quadratic_gradients(point));
@@ -43,15 +45,17 @@ MembraneSums::MembraneSums(const Discretization& problem, const Solution& soluti
       solution_(solution),
       v_(v),
       pressure_(pressure),
+      balance_(problem),
       plain_(problem.spaces(), 1),
       composite_(problem.spaces(), kCuts) {}
 
-TriangleSums MembraneSums::operator()(int t, LawField<1>& law) const {
+TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& load) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = v_.on<1>(t);
   const Quadratic<1> potential = potential_on(t);
-  const bool corrected = !potential.isZero(0), lifted = v_.is_lifted(t);
+  const std::optional<LinearBalance::Coefficients> balance = balance_(t, load);
+  const bool curled = !potential.isZero(0), lifted = v_.is_lifted(t);
   const Rule& rule = lifted ? composite_ : plain_;
   TriangleSums sums;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
@@ -59,21 +63,23 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law) const {
     const Point x = map(reference);
     const auto& [compliance, stiffness] = law(x);
     const double weight = share * map.determinant;
+    const double f = lifted ? problem_.problem.body(0, x) : load.at_points(t)[q];
     const Tensor<1> sigma = rule.stress(q, map, solution_.stress.col(t));
     Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
     if (lifted) v_.add_lifts<1>(t, reference, inverse, value, slope);
-    Tensor<1> curl = Tensor<1>::Zero();
-    if (corrected) {
+    Tensor<1> correction = Tensor<1>::Zero();
+    if (curled) {
       const Tensor<1> rise = gradient<1>(inverse, potential * rule.gradients[q].transpose());
-      curl << rise[1], -rise[0];
+      correction << rise[1], -rise[0];
     }
-    const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * curl;
+    if (balance) correction += rule.balance(q, map, *balance);
+    const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
     sums.gap += weight * gap.dot(stiffness * gap);
     sums.direct_gap += weight * direct_gap.dot(stiffness * direct_gap);
-    sums.correction += weight * curl.dot(compliance * curl);
+    sums.correction += weight * correction.dot(compliance * correction);
     sums.stress += weight * sigma.dot(compliance * sigma);
-    sums.energy += weight * (0.5 * slope.dot(stiffness * slope) - problem_.problem.body(0, x) * value[0]);
+    sums.energy += weight * (0.5 * slope.dot(stiffness * slope) - f * value[0]);
   }
   return sums;
 }

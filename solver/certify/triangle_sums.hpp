@@ -3,6 +3,7 @@
 #include "certify/admissible_displacement.hpp"
 #include "certify/contact_pressure.hpp"
 #include "certify/edge_tractions.hpp"
+#include "certify/linear_balance.hpp"
 #include "certify/macro_values.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
@@ -21,13 +22,13 @@ struct TriangleSums {
   TriangleSums& operator+=(const TriangleSums& other);
 };
 
-/// Membrane: σ* is σ_h and the curl of the potential of the pressure, v is v_h.
+/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the linear balance; v is v_h.
 class MembraneSums {
  public:
   MembraneSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
                const ContactPressure& pressure);
 
-  TriangleSums operator()(int t, LawField<1>& law) const;
+  TriangleSums operator()(int t, LawField<1>& law, LoadValues<1>& load) const;
 
  private:
   /// Where the integrals are evaluated, with what does not depend on the triangle.
@@ -35,7 +36,7 @@ class MembraneSums {
     Rule(const Spaces& spaces, int cuts);
 
     std::vector<WeightedPoint> points;
-    StressValues<1> stress;
+    StressValues<1> stress, balance;
     std::vector<Eigen::Matrix<double, 6, 1>> basis;
     std::vector<Eigen::Matrix<double, 2, 6>> gradients;
   };
@@ -46,6 +47,7 @@ class MembraneSums {
   const Solution& solution_;
   const AdmissibleDisplacement& v_;
   const ContactPressure& pressure_;
+  const LinearBalance balance_;
   Rule plain_, composite_;
 };
 
@@ -58,7 +60,7 @@ class ElasticSums {
   ElasticSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
-  TriangleSums operator()(int t, LawField<2>& law);
+  TriangleSums operator()(int t, LawField<2>& law, LoadValues<2>& load);
 
  private:
   using Given = MacroValues<1>::Given;
@@ -72,8 +74,9 @@ class ElasticSums {
 
   using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
 
-  Eigen::Matrix<double, MacroElement::kData, 1> data_of(int t, const AffineMap& map) const;
-  Given given_on(int t, const AffineMap& map) const;
+  Eigen::Matrix<double, MacroElement::kData, 1> data_of(int t, const AffineMap& map,
+                                                        LoadValues<2>& load) const;
+  Given given_on(int t, const AffineMap& map, LoadValues<2>& load) const;
   const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
   std::vector<SymmetricLaw> laws_at(const MacroRule& rule, const AffineMap& map, LawField<2>& law) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
