@@ -5,50 +5,19 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "certify/rigid_remainder.hpp"
+#include "certify/linear_remainder.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
-namespace {
-
-template <int D>
-using Components = Eigen::Matrix<double, D, 1>;
-
-/// 1 / j with the first zero j of the Bessel function J₁.
-constexpr double kPoincare = 1 / 3.8317059702075;
-
-double longest_edge(const std::array<Point, 3>& corners) {
-  return std::max(
-      {(corners[1] - corners[0]).norm(), (corners[2] - corners[1]).norm(), (corners[0] - corners[2]).norm()});
-}
-
-/// ‖w − w̄‖ ≤ remainder ‖∇w‖ for a membrane, ‖w − r‖ ≤ remainder ‖ε(w)‖ for an elastic body.
-template <int D>
-double remainder(const std::array<Point, 3>& corners) {
-  if constexpr (D == 2)
-    return rigid_remainder(corners);
-  else
-    return kPoincare * longest_edge(corners);
-}
-
-template <int D>
-double remainder_on_edge(const std::array<Point, 3>& corners, int e) {
-  if constexpr (D == 2) return rigid_remainder_on_edge(corners, e);
-  const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
-  return longest_edge(corners) *
-         std::sqrt(length * 2 / AffineMap(corners).determinant * (kPoincare + 1) * kPoincare);
-}
-
-}  // namespace
 
 template <int D>
 double Oscillation<D>::operator()(int t, LawField<D>& law, LoadValues<D>& load) const {
   const auto corners = problem_.mesh.corners(t);
   const double rest = of_load(t, load);
-  double sum = rest > 0 ? remainder<D>(corners) * rest : 0;
+  double sum = rest > 0 ? linear_remainder<D>(corners) * rest : 0;
   for (int e = 0; e < 3; ++e)
     if (const int edge = problem_.mesh.triangle_edges[t][e]; traction_.acts_on(edge))
-      sum += remainder_on_edge<D>(corners, e) * of_traction(edge);
+      sum += linear_remainder_on_edge<D>(corners, e) * of_traction(edge);
   if (sum == 0) return 0;
   const int points = problem_.element.has_constant_material() ? 1 : TriangleRule::size;
   double softest = 0;

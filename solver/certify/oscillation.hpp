@@ -10,10 +10,8 @@ namespace signorini {
 ///
 ///     (f − Πf, w) + <t − Πt, w>  ≤  oscillation · ‖w‖_E
 ///
-/// on one triangle, for every displacement w, with the projections Π onto P1. They keep what a rigid motion
-/// of the triangle sees, so that w counts only up to one: rigid_remainder() for an elastic body. For a
-/// membrane it is Poincaré's inequality with the best constant for triangles, ‖w − w̄‖ ≤ h/j ‖∇w‖ (Laugesen,
-/// Siudeja 2010), and the trace inequality that follows from it, ‖w − w̄‖²_e ≤ |e|/|T| h² (1/j² + 1/j) ‖∇w‖².
+/// on one triangle, for every displacement w, with the projections Π onto P1, so that w counts only up to
+/// linear functions: linear_remainder().
 template <int D>
 class Oscillation {
  public:

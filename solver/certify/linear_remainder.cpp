@@ -1,4 +1,4 @@
-#include "certify/rigid_remainder.hpp"
+#include "certify/linear_remainder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ double length(const std::array<Point, 3>& corners, int e) {
   return (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
 }
 
-/// The least of constant(reference, first, det B) ‖B‖² ‖B⁻¹‖ over the maps of the reference triangles, corner
-/// 0 to the corner named first.
-template <typename Constant>
+/// The least of constant(reference, first, det B) times the norms of B over the maps of the reference
+/// triangles, corner 0 to the corner named first.
+template <int D, typename Constant>
 double least_of_maps(const std::array<Point, 3>& corners, const Constant& constant) {
   double least = std::numeric_limits<double>::infinity();
   for (const ReferenceTriangle& reference : reference_triangles()) {
@@ -31,7 +31,7 @@ double least_of_maps(const std::array<Point, 3>& corners, const Constant& consta
       // The singular values s ≥ t have s² + t² = |B|² and s t = det B.
       const double square = b.squaredNorm(), det = b.determinant();
       const double s = (std::sqrt(square + 2 * det) + std::sqrt(std::max(0., square - 2 * det))) / 2;
-      least = std::min(least, constant(reference, first, det) * s * s * s / det);
+      least = std::min(least, constant(reference, first, det) * (D == 1 ? s : s * s * s / det));
     }
   }
   return least;
@@ -39,23 +39,33 @@ double least_of_maps(const std::array<Point, 3>& corners, const Constant& consta
 
 }  // namespace
 
-double rigid_remainder(const std::array<Point, 3>& corners) {
-  return least_of_maps(corners,
-                       [](const ReferenceTriangle& reference, int, double) { return reference.constant; });
+template <int D>
+double linear_remainder(const std::array<Point, 3>& corners) {
+  return least_of_maps<D>(
+      corners, [](const ReferenceTriangle& reference, int, double) { return reference.constants(D).load; });
 }
 
-double rigid_remainder_on_edge(const std::array<Point, 3>& corners, int e) {
-  return least_of_maps(corners, [&](const ReferenceTriangle& reference, int first, double determinant) {
+template <int D>
+double linear_remainder_on_edge(const std::array<Point, 3>& corners, int e) {
+  return least_of_maps<D>(corners, [&](const ReferenceTriangle& reference, int first, double determinant) {
     const int own = (e + 3 - first) % 3;
-    return reference.on_edges[own] *
+    return reference.constants(D).on_edges[own] *
            std::sqrt(length(corners, e) / length(reference.corners, own) / determinant);
   });
 }
 
+template double linear_remainder<1>(const std::array<Point, 3>&);
+template double linear_remainder<2>(const std::array<Point, 3>&);
+template double linear_remainder_on_edge<1>(const std::array<Point, 3>&, int);
+template double linear_remainder_on_edge<2>(const std::array<Point, 3>&, int);
+
 const std::array<ReferenceTriangle, 2>& reference_triangles() {
   static const std::array<ReferenceTriangle, 2> references{
-      ReferenceTriangle{{Point(0, 0), Point(1, 0), Point(0, 1)}, 0.615, {2.33, 1.74, 1.74}},
-      ReferenceTriangle{{Point(0, 0), Point(1, 0), Point(0.5, std::sqrt(0.75))}, 0.382, {1.48, 1.48, 1.48}}};
+      ReferenceTriangle{
+          {Point(0, 0), Point(1, 0), Point(0, 1)}, {0.177, {0.59, 0.465, 0.465}}, {0.54, {1.81, 1.44, 1.44}}},
+      ReferenceTriangle{{Point(0, 0), Point(1, 0), Point(0.5, std::sqrt(0.75))},
+                        {0.139, {0.459, 0.459, 0.459}},
+                        {0.343, {1.01, 1.01, 1.01}}}};
   return references;
 }
 
