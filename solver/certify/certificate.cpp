@@ -123,7 +123,7 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     certificate.squares = std::move(totals.shares);
   };
   if (problem.spaces().components == 1) {
-    minimize_potential(problem, solution, v, clearance, pressure, progress);
+    minimize_potential(problem, v, clearance, pressure, progress);
     finish(Totals<1, MembraneSums>(problem, v, pressure, MembraneSums(problem, solution, v, pressure),
                                    progress));
   } else {

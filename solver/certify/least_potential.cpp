@@ -6,6 +6,7 @@
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 
+#include "certify/potential_nodes.hpp"
 #include "mesh/parts.hpp"
 
 namespace signorini {
@@ -13,91 +14,9 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr int kLayers = 3;
 constexpr int kSteps = 20;
 /// Ends that would stop a step within this part of it are kept together.
 constexpr double kTogether = 1e-3;
-
-/// The nodes of Ψ around what is changed: a point has its own number, the middle of an edge follows the
-/// points.
-class Region {
- public:
-  Region(const Discretization& problem, const ContactPressure& pressure) : mesh_(problem.mesh) {
-    const std::vector<int> layers = layers_around(changed(pressure));
-    numbers_.assign(mesh_.points.size() + mesh_.edges.size(), -1);
-    for (int t = 0; t < problem.triangles(); ++t)
-      if (std::ranges::any_of(mesh_.triangles[t], [&](int point) { return layers[point] < kLayers; }))
-        take(t, layers);
-    leave_out_traction(problem);
-    int next = 0;
-    for (int& number : numbers_)
-      if (number >= 0) number = next++;
-    nodes_ = next;
-  }
-
-  const std::vector<int>& triangles() const { return triangles_; }
-  int nodes() const { return nodes_; }
-
-  /// The node, or -1 where Ψ stays 0.
-  int at_point(int point) const { return numbers_[point]; }
-  int at_middle(int edge) const { return numbers_[mesh_.points.size() + edge]; }
-
-  std::array<int, 6> nodes_of(int t) const {
-    std::array<int, 6> nodes;
-    for (int k = 0; k < 3; ++k) {
-      nodes[k] = at_point(mesh_.triangles[t][k]);
-      nodes[3 + k] = at_middle(mesh_.triangle_edges[t][k]);
-    }
-    return nodes;
-  }
-
- private:
-  std::vector<int> changed(const ContactPressure& pressure) const {
-    double largest = 0;
-    for (const auto& [point, value] : pressure.potential_at_points)
-      largest = std::max(largest, std::abs(value));
-    std::vector<int> points;
-    for (const auto& [point, value] : pressure.potential_at_points)
-      if (std::abs(value) > 1e-9 * largest) points.push_back(point);
-    return points;
-  }
-
-  /// The number of triangles that lie between a point and the given ones, at most kLayers.
-  std::vector<int> layers_around(const std::vector<int>& points) const {
-    std::vector<int> layers(mesh_.points.size(), kLayers);
-    for (const int point : points) layers[point] = 0;
-    for (int layer = 1; layer < kLayers; ++layer)
-      for (const auto& corners : mesh_.triangles)
-        if (std::ranges::any_of(corners, [&](int point) { return layers[point] == layer - 1; }))
-          for (const int point : corners) layers[point] = std::min(layers[point], layer);
-    return layers;
-  }
-
-  void take(int t, const std::vector<int>& layers) {
-    triangles_.push_back(t);
-    for (const int point : mesh_.triangles[t])
-      if (layers[point] < kLayers) numbers_[point] = 0;
-    for (const int edge : mesh_.triangle_edges[t])
-      if (std::ranges::any_of(mesh_.edges[edge], [&](int point) { return layers[point] < kLayers; }))
-        numbers_[mesh_.points.size() + edge] = 0;
-  }
-
-  void leave_out_traction(const Discretization& problem) {
-    for (const BoundaryPart& part : mesh_.boundary) {
-      if (condition_on<Fixed>(problem.problem, part.name) ||
-          condition_on<Contact>(problem.problem, part.name))
-        continue;
-      for (const int edge : part.edges) {
-        numbers_[mesh_.points.size() + edge] = -1;
-        for (const int point : mesh_.edges[edge]) numbers_[point] = -1;
-      }
-    }
-  }
-
-  const Mesh& mesh_;
-  std::vector<int> triangles_, numbers_;
-  int nodes_ = 0;
-};
 
 /// A contact edge from its first to its second point.
 struct Side {
@@ -123,49 +42,15 @@ class Minimization {
       : problem_(problem),
         v_(v),
         pressure_(pressure),
-        region_(problem, pressure),
-        potential_(Eigen::VectorXd::Zero(region_.nodes())),
-        slope_(Eigen::VectorXd::Zero(region_.nodes())) {
+        nodes_(problem, pressure),
+        potential_(Eigen::VectorXd::Zero(nodes_.size())),
+        slope_(Eigen::VectorXd::Zero(nodes_.size())) {
     for (const auto& [point, value] : pressure.potential_at_points)
-      if (region_.at_point(point) >= 0) potential_[region_.at_point(point)] = value;
+      if (nodes_.at_point(point) >= 0) potential_[nodes_.at_point(point)] = value;
     for (const auto& [edge, value] : pressure.potential_at_middles)
-      if (region_.at_middle(edge) >= 0) potential_[region_.at_middle(edge)] = value;
+      if (nodes_.at_middle(edge) >= 0) potential_[nodes_.at_middle(edge)] = value;
     for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i, clearance);
-  }
-
-  void assemble(const Solution& solution) {
-    const StressValues<1> stress(problem_.spaces(), triangle_points());
-    LawField<1> law(problem_.problem.material);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (const int t : region_.triangles()) {
-      const AffineMap map(problem_.mesh.corners(t));
-      const Eigen::Matrix2d inverse = map.jacobian.inverse();
-      const std::array<int, 6> nodes = region_.nodes_of(t);
-      const bool lifted = v_.is_lifted(t);
-      for (int q = 0; q < TriangleRule::size; ++q) {
-        const Point& reference = triangle_rule().points[q];
-        const double weight = triangle_rule().weights[q] * map.determinant;
-        const Eigen::Matrix<double, 2, 6> gradients = quadratic_gradients(reference);
-        Tensor<1> slope = inverse.transpose() * (gradients * v_.on<1>(t).transpose());
-        Eigen::Matrix<double, 1, 1> value = Eigen::Matrix<double, 1, 1>::Zero();
-        if (lifted) v_.add_lifts<1>(t, reference, inverse, value, slope);
-        const TensorMap<1> compliance = law(map(reference)).compliance;
-        const Tensor<1> gap = compliance * stress(q, map, solution.stress.col(t)) - slope;
-        const Eigen::Matrix<double, 2, 6> rises = inverse.transpose() * gradients;
-        Eigen::Matrix<double, 2, 6> curls;
-        curls << rises.row(1), -rises.row(0);
-        for (int a = 0; a < 6; ++a) {
-          if (nodes[a] < 0) continue;
-          slope_[nodes[a]] += weight * curls.col(a).dot(gap);
-          for (int b = 0; b < 6; ++b)
-            if (nodes[b] >= 0)
-              entries.emplace_back(nodes[a], nodes[b],
-                                   2 * weight * curls.col(a).dot(compliance * curls.col(b)));
-        }
-      }
-    }
-    curvature_.resize(region_.nodes(), region_.nodes());
-    curvature_.setFromTriplets(entries.begin(), entries.end());
+    assemble();
   }
 
   /// Goes towards the minimum as far as p* ≥ 0 allows. Returns false once it is there.
@@ -193,22 +78,46 @@ class Minimization {
 
   void store() {
     const Mesh& mesh = problem_.mesh;
-    for (const int t : region_.triangles())
+    for (const int t : nodes_.triangles())
       for (int k = 0; k < 3; ++k) {
         const int point = mesh.triangles[t][k], edge = mesh.triangle_edges[t][k];
-        if (region_.at_point(point) >= 0)
-          pressure_.potential_at_points[point] = potential_[region_.at_point(point)];
-        if (region_.at_middle(edge) >= 0)
-          pressure_.potential_at_middles[edge] = potential_[region_.at_middle(edge)];
+        if (nodes_.at_point(point) >= 0)
+          pressure_.potential_at_points[point] = potential_[nodes_.at_point(point)];
+        if (nodes_.at_middle(edge) >= 0)
+          pressure_.potential_at_middles[edge] = potential_[nodes_.at_middle(edge)];
       }
   }
 
  private:
+  void assemble() {
+    LawField<1> law(problem_.problem.material);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const int t : nodes_.triangles()) {
+      const AffineMap map(problem_.mesh.corners(t));
+      const std::array<int, 6> nodes = nodes_.on(t);
+      Eigen::Matrix<double, 6, 6> own = Eigen::Matrix<double, 6, 6>::Zero();
+      for (int q = 0; q < TriangleRule::size; ++q) {
+        const Point& reference = triangle_rule().points[q];
+        const Eigen::Matrix<double, 2, 6> rises =
+            map.jacobian.inverse().transpose() * quadratic_gradients(reference);
+        Eigen::Matrix<double, 2, 6> curls;
+        curls << rises.row(1), -rises.row(0);
+        own += 2 * triangle_rule().weights[q] * map.determinant * curls.transpose() *
+               law(map(reference)).compliance * curls;
+      }
+      for (int a = 0; a < 6; ++a)
+        for (int b = 0; b < 6; ++b)
+          if (nodes[a] >= 0 && nodes[b] >= 0) entries.emplace_back(nodes[a], nodes[b], own(a, b));
+    }
+    curvature_.resize(nodes_.size(), nodes_.size());
+    curvature_.setFromTriplets(entries.begin(), entries.end());
+  }
+
   void add_side(int i, const Eigen::VectorXd& clearance) {
     const ContactEdge& contact = problem_.clearance.edges[i];
     const auto& [a, b] = problem_.mesh.edges[contact.edge];
     const Side side{i,
-                    {region_.at_point(a), region_.at_point(b), region_.at_middle(contact.edge)},
+                    {nodes_.at_point(a), nodes_.at_point(b), nodes_.at_middle(contact.edge)},
                     (domain_on_the_left(problem_.mesh, contact.edge)[0] == a ? 1 : -1) /
                         problem_.mesh.length(contact.edge),
                     {}};
@@ -255,11 +164,11 @@ class Minimization {
   /// By columns, the changes of Ψ that change no pressure that is kept: Ψ rises by nothing along an edge that
   /// keeps both ends; one that keeps one end gives up its middle.
   Sparse free_changes() const {
-    std::vector<int> group(region_.nodes() + 1);
+    std::vector<int> group(nodes_.size() + 1);
     std::iota(group.begin(), group.end(), 0);
     const auto root = [&](int node) {
       // The last group is that of Ψ = 0.
-      int of = node < 0 ? region_.nodes() : node;
+      int of = node < 0 ? nodes_.size() : node;
       while (group[of] != of) of = group[of] = group[group[of]];
       return of;
     };
@@ -272,26 +181,26 @@ class Minimization {
         join(side.nodes[0], side.nodes[1]);
         join(side.nodes[0], side.nodes[2]);
       }
-    std::vector<bool> gives_up(region_.nodes(), false);
+    std::vector<bool> gives_up(nodes_.size(), false);
     for (const Side& side : sides_)
       if (side.kept[0] != side.kept[1]) gives_up[side.nodes[2]] = true;
-    std::vector<int> column(region_.nodes() + 1, -1);
+    std::vector<int> column(nodes_.size() + 1, -1);
     int columns = 0;
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int row, int node, double factor) {
       const int of = root(node);
-      if (of == region_.nodes()) return;
+      if (of == nodes_.size()) return;
       if (column[of] < 0) column[of] = columns++;
       entries.emplace_back(row, column[of], factor);
     };
-    for (int node = 0; node < region_.nodes(); ++node)
+    for (int node = 0; node < nodes_.size(); ++node)
       if (!gives_up[node]) add(node, node, 1);
     for (const Side& side : sides_)
       if (side.kept[0] != side.kept[1]) {
         const Eigen::Vector2d factors = side.middle_for(side.kept[0] ? 0 : 1);
         for (int k = 0; k < 2; ++k) add(side.nodes[2], side.nodes[k], factors[k]);
       }
-    Sparse basis(region_.nodes(), columns);
+    Sparse basis(nodes_.size(), columns);
     basis.setFromTriplets(entries.begin(), entries.end());
     return basis;
   }
@@ -299,20 +208,18 @@ class Minimization {
   const Discretization& problem_;
   const AdmissibleDisplacement& v_;
   ContactPressure& pressure_;
-  Region region_;
+  const PotentialNodes nodes_;
   std::vector<Side> sides_;
-  Eigen::VectorXd potential_, slope_;  ///< Ψ, and the derivative of half the bound at Ψ = 0
+  Eigen::VectorXd potential_, slope_;  ///< Ψ, and the derivative at Ψ = 0 of what is minimised
   Sparse curvature_;                   ///< its second derivative
 };
 
 }  // namespace
 
-void minimize_potential(const Discretization& problem, const Solution& solution,
-                        const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
-                        ContactPressure& pressure, Progress& progress) {
+void minimize_potential(const Discretization& problem, const AdmissibleDisplacement& v,
+                        const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress) {
   if (pressure.potential_at_points.empty()) return;
   Minimization minimization(problem, v, clearance, pressure);
-  minimization.assemble(solution);
   for (int i = 0; i < kSteps && minimization.step(); ++i) progress.check();
   minimization.store();
 }

@@ -95,7 +95,7 @@ class EdgeFields {
     v_->relax(x, progress_);
     const Eigen::VectorXd clearance = discretization_.clearance.clearance(found.clearance);
     pressure_ = std::make_unique<ContactPressure>(discretization_, solution_.stress, clearance);
-    minimize_potential(discretization_, solution_, *v_, clearance, *pressure_, progress_);
+    minimize_potential(discretization_, *v_, clearance, *pressure_, progress_);
   }
 
   const Mesh& mesh() const { return discretization_.mesh; }
