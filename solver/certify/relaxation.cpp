@@ -55,11 +55,9 @@ class Energy {
 
   Eigen::Index size() const { return points_ + static_cast<Eigen::Index>(problem_.mesh.edges.size()); }
 
-  /// The derivative at v.
-  Eigen::VectorXd slope(const Eigen::VectorXd& v) const { return curvature_times(v) - load(); }
-
-  Eigen::VectorXd curvature_times(const Eigen::VectorXd& v) const {
-    Eigen::VectorXd product = Eigen::VectorXd::Zero(size());
+  /// The second derivative times v.
+  void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+    product.setZero();
     for_triangles([&](int t, const std::array<int, 6>& nodes) {
       Local own;
       for (int k = 0; k < 6; ++k) own[k] = v[nodes[k]];
@@ -67,7 +65,6 @@ class Energy {
                            moduli_(2, t) * (reference_.yy * own);
       for (int k = 0; k < 6; ++k) product[nodes[k]] += change[k];
     });
-    return product;
   }
 
   Eigen::VectorXd diagonal() const {
@@ -78,23 +75,6 @@ class Energy {
                               moduli_(2, t) * reference_.yy(k, k);
     });
     return diagonal;
-  }
-
- private:
-  /// Its mean will do for the nonconforming scheme.
-  Eigen::Vector3d load_at_corners(int t, double twice_area) const {
-    if (problem_.spaces().order == 1) return LoadValues<1>(problem_).projection(t).transpose();
-    return Eigen::Vector3d::Constant(2 / twice_area * problem_.load(0, t));
-  }
-
-  template <typename Visit>
-  void for_triangles(const Visit& visit) const {
-    const Mesh& mesh = problem_.mesh;
-    for (int t = 0; t < problem_.triangles(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const auto& [d, e, f] = mesh.triangle_edges[t];
-      visit(t, {a, b, c, points_ + d, points_ + e, points_ + f});
-    }
   }
 
   Eigen::VectorXd load() const {
@@ -119,6 +99,23 @@ class Energy {
     return load;
   }
 
+ private:
+  /// Its mean will do for the nonconforming scheme.
+  Eigen::Vector3d load_at_corners(int t, double twice_area) const {
+    if (problem_.spaces().order == 1) return LoadValues<1>(problem_).projection(t).transpose();
+    return Eigen::Vector3d::Constant(2 / twice_area * problem_.load(0, t));
+  }
+
+  template <typename Visit>
+  void for_triangles(const Visit& visit) const {
+    const Mesh& mesh = problem_.mesh;
+    for (int t = 0; t < problem_.triangles(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      const auto& [d, e, f] = mesh.triangle_edges[t];
+      visit(t, {a, b, c, points_ + d, points_ + e, points_ + f});
+    }
+  }
+
   const Discretization& problem_;
   const Reference reference_;
   int points_;
@@ -139,11 +136,14 @@ void relax(const Discretization& problem, QuadraticValues& values, Progress& pro
     scale[i] = held || scale[i] == 0 ? 0 : 1 / scale[i];
   }
 
-  Eigen::VectorXd residual = -energy.slope(v), direction = scale.cwiseProduct(residual);
+  Eigen::VectorXd product(v.size()), residual = energy.load();
+  energy.apply(v, product);
+  residual -= product;
+  Eigen::VectorXd direction = scale.cwiseProduct(residual);
   double size = residual.dot(direction);
   for (int step = 0; step < kSteps && size > 0; ++step) {
     progress.check();
-    const Eigen::VectorXd product = energy.curvature_times(direction);
+    energy.apply(direction, product);
     const double length = size / direction.dot(product);
     v += length * direction;
     residual -= length * product;
