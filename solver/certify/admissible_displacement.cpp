@@ -68,9 +68,11 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& coupling, Progress& pr
   points_.row(0) = values.points;
   middles_.row(0) = values.middles;
   for (const ContactEdge& contact : problem_.clearance.edges)
-    for (int k = 0; k < 2; ++k)
-      if (const double lack = -room(contact, k); lack > 0 && !touches(contact, k))
-        points_.col(mesh.edges[contact.edge][k]) -= lack * direction(contact);
+    for (int k = 0; k < 2; ++k) {
+      const int point = mesh.edges[contact.edge][k];
+      const double lack = -room(contact, k);
+      if (lack > 0 && !values.held_points[point]) points_.col(point) -= lack * direction(contact);
+    }
   for (const ContactEdge& contact : problem_.clearance.edges)
     if (!values.held_middles[contact.edge]) lower_below(contact);
 }

@@ -332,6 +332,22 @@ TEST(LinearBalance, HasWhatTheStressLacksOfTheLinearPartsOfLoadAndTraction) {
   }
 }
 
+TEST(Certificate, OfAMembraneDoesNotDependOnUnits) {
+  for (const Scheme scheme : schemes) {
+    const double plain = solve_exactly(problems::paper(scheme, 16)).summary.error_bound.value().relative;
+    for (const auto& [length, modulus] : {std::pair(1e9, 1e-9), {1e-9, 1e9}, {1e-9, 1e-9}}) {
+      Problem problem = problems::paper(scheme, 16);
+      problem.domain = Rectangle{{0, 0}, {length, length}};
+      problem.material = MembraneStiffness{Field(modulus), Field(0), Field(modulus)};
+      problem.body =
+          problems::function([middle = length / 2](const Point& x) { return x.x() < middle ? 10. : -10.; });
+      const ErrorBound bound = solve_exactly(problem).summary.error_bound.value();
+      EXPECT_TRUE(bound.guaranteed);
+      EXPECT_NEAR(bound.relative, plain, 1e-9 * plain);
+    }
+  }
+}
+
 TEST(Certificate, SharesTheBoundOutToTheTriangles) {
   for (const Scheme scheme : schemes) {
     const Solution solution = solve_exactly(problems::SignoriniEdge::problem(scheme, 8));
