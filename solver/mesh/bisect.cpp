@@ -97,8 +97,9 @@ Mesh with_longest_edges_first(Mesh mesh) {
     const auto longest =
         std::ranges::max_element(edges, {}, [&](int edge) { return std::pair(mesh.length(edge), edge); });
     const auto turn = longest - edges.begin();
-    std::ranges::rotate(edges, edges.begin() + turn);
-    std::ranges::rotate(mesh.triangles[t], mesh.triangles[t].begin() + turn);
+    std::rotate(edges.begin(), edges.begin() + turn, edges.end());
+    auto& corners = mesh.triangles[t];
+    std::rotate(corners.begin(), corners.begin() + turn, corners.end());
   }
   return mesh;
 }

@@ -29,8 +29,9 @@ class Outgoing {
  private:
   int first_at(int point) const {
     const auto begin = [&](int i) { return edges_[i][0]; };
-    for (const int i : std::ranges::equal_range(by_begin_, point, {}, begin))
-      if (!taken_[i]) return i;
+    for (auto i = std::ranges::lower_bound(by_begin_, point, {}, begin);
+         i != by_begin_.end() && begin(*i) == point; ++i)
+      if (!taken_[*i]) return *i;
     return -1;
   }
 

@@ -16,8 +16,8 @@ EdgeTable::EdgeTable(const std::vector<std::array<int, 3>>& triangles) {
 
 std::span<const TriangleEdge> EdgeTable::between(std::array<int, 2> points) const {
   std::ranges::sort(points);
-  const auto range = std::ranges::equal_range(entries_, points, {}, &TriangleEdge::points);
-  return {range.begin(), range.end()};
+  return {std::ranges::lower_bound(entries_, points, {}, &TriangleEdge::points),
+          std::ranges::upper_bound(entries_, points, {}, &TriangleEdge::points)};
 }
 
 }  // namespace signorini

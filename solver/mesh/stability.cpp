@@ -101,7 +101,7 @@ class CornerSplit {
   /// The triangle, its vertices listed from a given one on.
   Triangle from(int t, int first) const {
     Triangle triangle = mesh_.triangles[t];
-    std::ranges::rotate(triangle, triangle.begin() + first);
+    std::rotate(triangle.begin(), triangle.begin() + first, triangle.end());
     return triangle;
   }
 
