@@ -77,7 +77,7 @@ class Columns {
   /// Columns that a row without a solution has nothing in.
   void add(const Names<CellOfRow>& columns) {
     for (const auto& [name, of_row] : columns)
-      add(std::string(name), [&rows = rows_, of_row](std::size_t row) {
+      add(std::string(name), [&rows = rows_, of_row = of_row](std::size_t row) {
         return rows[row].error.empty() ? of_row(rows[row]) : Cell();
       });
   }

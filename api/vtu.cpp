@@ -1,7 +1,7 @@
 #include "api/vtu.hpp"
 
+#include <algorithm>
 #include <cstdint>
-#include <ranges>
 
 #include "fem/stress_invariants.hpp"
 
@@ -100,7 +100,7 @@ DataArray points(const Solution& solution) {
 
 /// Each triangle takes the next three points.
 std::vector<DataArray> cells(const Solution& solution) {
-  constexpr std::string_view vtk_triangle = "\5";
+  static constexpr std::string_view vtk_triangle = "\5";
   const std::uint64_t count = triangles(solution);
   const auto connectivity = [count](PieceWriter& out) {
     for (std::uint64_t point = 0; point < 3 * count; ++point) out.put_binary(point);
@@ -128,8 +128,9 @@ std::vector<Section> sections(const Solution& solution) {
 /// offset that it looks for: in this order a new offset is never met before an old one of the same value.
 std::vector<const DataArray*> order_of_data(const std::vector<Section>& sections) {
   std::vector<const DataArray*> order;
-  for (const Section& section : sections | std::views::reverse)
-    for (const DataArray& array : section.arrays | std::views::reverse) order.push_back(&array);
+  for (const Section& section : sections)
+    for (const DataArray& array : section.arrays) order.push_back(&array);
+  std::ranges::reverse(order);
   return order;
 }
 
