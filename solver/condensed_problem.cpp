@@ -1,26 +1,12 @@
 #include "condensed_problem.hpp"
 
 #include "contact/accelerated_uzawa.hpp"
+#include "contact/complete.hpp"
 #include "contact/rigid_motions.hpp"
 #include "stable_mesh.hpp"
 #include "system/hybrid_system.hpp"
-#include "system/recovery.hpp"
 
 namespace signorini {
-namespace {
-
-/// The contact unknowns whose pressure vanishes exactly: the open ones of the active set. The Uzawa iteration
-/// leaves its clearances where its tolerance ended it.
-std::vector<int> exactly_open(const Eigen::VectorXd& clearance, const Method& method) {
-  std::vector<int> open;
-  if (!std::holds_alternative<ActiveSet>(method)) return open;
-  for (int i = 0; i < static_cast<int>(clearance.size()); ++i)
-    if (clearance[i] > 0) open.push_back(i);
-  return open;
-}
-
-}  // namespace
-
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const Eigen::VectorXd& start) {
   if (contact.size() == 0) return {};
@@ -61,26 +47,15 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   progress.enter(Phase::iterate);
   const ContactResult found = find_clearance(contact(), settings.method, progress, start);
   progress.found();
-  Fields fields = complete(found, exactly_open(found.clearance, settings.method), progress);
+  // The Uzawa iteration leaves its clearances where its tolerance ended it.
+  const bool exact = std::holds_alternative<ActiveSet>(settings.method);
+  Completed all = complete(*discretization_, *condensed_, found.clearance,
+                           exact ? open_unknowns(found.clearance) : std::vector<int>{}, progress);
+  Fields fields{std::move(all.fields.stress), std::move(all.fields.displacement),
+                all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
   Solution solution = summarize(*discretization_, std::move(fields), settings, progress);
   solution.summary.reused = reused_;
   return solution;
-}
-
-Fields CondensedProblem::complete(const ContactResult& found, const std::vector<int>& exactly_open,
-                                  Progress& progress) {
-  const Discretization& problem = *discretization_;
-  Eigen::VectorXd x = condensed_->traces(found.clearance, progress);
-  Recovered fields = recover(problem, x, progress);
-  // A stiff volume (ν → 1/2) costs the factorisation digits that iterative refinement brings back.
-  constexpr int most_steps = 3;
-  for (int step = 0; step < most_steps && !fields.is_balanced(problem.traces); ++step) {
-    const Eigen::VectorXd dx = condensed_->correction(fields.imbalance, exactly_open, progress);
-    change(problem, dx, fields, progress);
-    x += dx;
-  }
-  const Eigen::VectorXd clearance = x.tail(found.clearance.size()).cwiseMax(0);
-  return {std::move(fields.stress), std::move(fields.displacement), clearance, std::move(x), found.outcome};
 }
 
 }  // namespace signorini

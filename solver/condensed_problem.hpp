@@ -33,7 +33,6 @@ class CondensedProblem {
 
  private:
   void make(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
-  Fields complete(const ContactResult& found, const std::vector<int>& exactly_open, Progress& progress);
 
   std::shared_ptr<const Operator> operator_;
   bool reused_;

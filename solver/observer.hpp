@@ -57,6 +57,16 @@ class Observer {
   virtual bool keep_going() { return true; }
 };
 
+/// Shows the observer of a whole solve nothing of a part of it, but lets it end the part.
+class SilentObserver : public Observer {
+ public:
+  explicit SilentObserver(Observer& whole) : whole_(whole) {}
+  bool keep_going() override { return whole_.keep_going(); }
+
+ private:
+  Observer& whole_;
+};
+
 /// A problem that is well posed as text but has no solution, or none that this machine can compute: a
 /// body that nothing holds, a contact that can never be met, a matrix that is too large. The text names
 /// the cause and the remedy.

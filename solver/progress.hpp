@@ -18,6 +18,8 @@ class Progress {
   Progress(Observer& observer, std::optional<double> time_limit, double spent = 0)
       : observer_(observer), time_limit_(time_limit), spent_before_(spent) {}
 
+  Observer& observer() { return observer_; }
+
   /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up and there is no answer yet.
   void enter(Phase phase);
 

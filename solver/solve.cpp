@@ -29,21 +29,11 @@ Solution solve_paper_form(const Problem& problem, const Settings& settings, Prog
   });
 }
 
-/// Shows the observer of a whole job no phases and iterations, but lets it end the entry at hand.
-class WithinSweep : public Observer {
- public:
-  explicit WithinSweep(Observer& whole) : whole_(whole) {}
-  bool keep_going() override { return whole_.keep_going(); }
-
- private:
-  Observer& whole_;
-};
-
 /// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
 template <typename SolveOne>
 void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, Observer& observer,
                 const Progress& whole, Solution& solution, const SolveOne& solve_one) {
-  WithinSweep within(observer);
+  SilentObserver within(observer);
   for (const Variation& variation : sweep) {
     Progress progress(within, settings.time_limit, whole.seconds());
     SweepEntry entry;

@@ -124,7 +124,7 @@ class Builder {
                              "the contact can never be met at " + to_string(row.point) +
                                  ", which a fixed part holds beyond the gap: raise the gap there "
                                  "or the fixed value"}});
-    row.datum = std::max(0., row.datum);
+    if (row.datum < rounding) row.datum = 0;
     space_.rows.push_back(row);
     return static_cast<int>(space_.rows.size()) - 1;
   }

@@ -48,28 +48,36 @@ AffineMap::AffineMap(const std::array<Point, 3>& corners) : origin(corners[0]) {
 }
 
 RaviartThomas::RaviartThomas(int order, bool with_bubble) : order_(order), with_bubble_(with_bubble) {
-  coefficients_ = functionals_of_monomials().inverse();
+  const int monomial_fields = size() - (with_bubble ? 1 : 0);
+  coefficients_ =
+      functionals(monomial_fields, [&](const Point& p) { return monomials(order, p); }).inverse();
 }
 
-LocalMatrix RaviartThomas::functionals_of_monomials() const {
+template <typename Fields>
+LocalMatrix RaviartThomas::functionals(int fields, const Fields& values) const {
   const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
-  const int n = static_cast<int>(monomials(order_, corners[0]).cols());
-  LocalMatrix functionals = LocalMatrix::Zero(n, n);
+  LocalMatrix functionals = LocalMatrix::Zero(edge_functions() + 2 * order_, fields);
   for (int e = 0; e < 3; ++e) {
     const Point &a = corners[(e + 1) % 3], &b = corners[(e + 2) % 3];
     const Vector scaled_normal(b.y() - a.y(), a.x() - b.x());  // outward, as long as the edge
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = edge_rule().points[q];
       const LocalVector phi = edge_basis(order_, s);
-      const Eigen::RowVectorXd flux = scaled_normal.transpose() * monomials(order_, a + s * (b - a));
+      const Eigen::RowVectorXd flux = scaled_normal.transpose() * values(a + s * (b - a));
       functionals.middleRows(e * functions_per_edge(), functions_per_edge()) +=
           edge_rule().weights[q] * phi * flux;
     }
   }
   if (order_ == 1)
     for (int q = 0; q < TriangleRule::size; ++q)
-      functionals.bottomRows(2) += triangle_rule().weights[q] * monomials(order_, triangle_rule().points[q]);
+      functionals.bottomRows(2) += triangle_rule().weights[q] * values(triangle_rule().points[q]);
   return functionals;
+}
+
+LocalVector RaviartThomas::interpolate(const AffineMap& map,
+                                       const std::function<Vector(const Point& x)>& field) const {
+  const Eigen::Matrix2d back = map.determinant * map.jacobian.inverse();
+  return functionals(1, [&](const Point& p) -> Vector { return back * field(map(p)); });
 }
 
 LocalVectors RaviartThomas::reference_values(const Point& reference) const {

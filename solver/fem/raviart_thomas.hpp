@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include <Eigen/Core>
 
@@ -53,8 +54,14 @@ class RaviartThomas {
   /// Column j: function j on the triangle at the image of the reference point.
   LocalVectors values(const AffineMap& map, const Point& reference) const;
 
+  /// The functionals of a field on the triangle: the coefficients of its interpolant, which is the field itself
+  /// if it lies in RT_k. Not for a row with a bubble.
+  LocalVector interpolate(const AffineMap& map, const std::function<Vector(const Point& x)>& field) const;
+
  private:
-  LocalMatrix functionals_of_monomials() const;
+  /// By columns, the functionals of fields on the reference triangle.
+  template <typename Fields>
+  LocalMatrix functionals(int fields, const Fields& values) const;
 
   int order_;
   bool with_bubble_;

@@ -42,8 +42,13 @@ class Bisection {
     }
   }
 
+  const std::vector<int>& parents() const { return parents_; }
+
   Mesh mesh() {
-    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) cut(t);
+    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+      cut(t);
+      parents_.resize(triangles_.size(), t);
+    }
     return make_mesh(std::move(points_), std::move(triangles_), names(mesh_.boundary), segments());
   }
 
@@ -87,6 +92,7 @@ class Bisection {
   std::vector<Point> points_;
   std::vector<int> middle_;  // the number of the middle of each edge, -1 where it stays whole
   std::vector<Triangle> triangles_;
+  std::vector<int> parents_;
 };
 
 }  // namespace
@@ -106,6 +112,13 @@ Mesh with_longest_edges_first(Mesh mesh) {
 
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked) {
   return Bisection(mesh, marked).mesh();
+}
+
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents) {
+  Bisection bisection(mesh, marked);
+  Mesh finer = bisection.mesh();
+  parents = bisection.parents();
+  return finer;
 }
 
 }  // namespace signorini

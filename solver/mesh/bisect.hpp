@@ -15,4 +15,7 @@ Mesh with_longest_edges_first(Mesh mesh);
 /// they are cut. The points keep their numbers, and the parts their names and the order of their edges.
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked);
 
+/// The same; `parents` tells for each new triangle which one it is, or is part of.
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents);
+
 }  // namespace signorini

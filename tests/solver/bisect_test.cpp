@@ -3,11 +3,13 @@
 #include <random>
 #include <set>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "mesh/import.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/rectangle.hpp"
+#include "mesh/submesh.hpp"
 #include "mesh_quality.hpp"
 
 namespace signorini {
@@ -72,6 +74,45 @@ TEST(Bisect, KeepsTheDomainItsPartsAndTheirOrder) {
       EXPECT_EQ(breaks_of(mesh, mesh.boundary[p]), breaks_of(coarse, coarse.boundary[p]));
     }
     for (std::size_t p = 0; p < coarse.points.size(); ++p) EXPECT_EQ(mesh.points[p], coarse.points[p]);
+  }
+}
+
+TEST(Bisect, TellsTheParentOfEveryTriangle) {
+  std::mt19937 engine(2);
+  for (const Mesh& given : meshes()) {
+    const Mesh coarse = with_longest_edges_first(given);
+    std::vector<int> parents;
+    const Mesh fine = bisect(coarse, random_triangles(coarse, engine), parents);
+    ASSERT_EQ(parents.size(), fine.triangles.size());
+    for (int t = 0; t < static_cast<int>(parents.size()); ++t) {
+      const auto [a, b, c] = coarse.corners(parents[t]);
+      Eigen::Matrix2d jacobian;
+      jacobian << b - a, c - a;
+      const Point inside = jacobian.inverse() * (fine.centroid(t) - a);
+      EXPECT_GT(std::min({inside.x(), inside.y(), 1 - inside.sum()}), 0.01);
+    }
+  }
+}
+
+TEST(Submesh, HasItsTrianglesItsPartsAndTheCut) {
+  std::mt19937 engine(3);
+  for (const Mesh& whole : meshes()) {
+    std::vector<int> triangles;
+    for (int t = 0; t < static_cast<int>(whole.triangles.size()); ++t)
+      if (engine() % 3) triangles.push_back(t);
+    const auto [mesh, cut] = Submesh(whole, triangles);
+    ASSERT_EQ(mesh.triangles.size(), triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      EXPECT_EQ(mesh.corners(static_cast<int>(i)), whole.corners(triangles[i]));
+    // Every edge of the boundary lies in one part, in the cut or in that of the whole.
+    EXPECT_EQ(misfiled_edges(mesh), 0);
+    const BoundaryPart& last = mesh.boundary.back();
+    ASSERT_EQ(last.name, Submesh::kCut);
+    ASSERT_EQ(last.edges.size(), cut.size());
+    for (std::size_t i = 0; i < cut.size(); ++i) EXPECT_EQ(mesh.length(last.edges[i]), whole.length(cut[i]));
+    std::set<std::string> names{Submesh::kCut};
+    for (const BoundaryPart& part : whole.boundary) names.insert(part.name);
+    for (const BoundaryPart& part : mesh.boundary) EXPECT_TRUE(names.erase(part.name)) << part.name;
   }
 }
 

@@ -92,6 +92,9 @@ TEST_P(Elements, ReproducesConstantsAndLinears) {
     if (element_.order() == 0) slope = 0.7 * Eigen::Matrix2d::Identity();  // RT0 holds the field x itself
     const auto field = [&](const Point& x) -> Vector { return Vector(0.3, -1.1) + slope * map(x); };
     const LocalVector coefficients = functionals(element_, corners, field);
+    const LocalVector interpolated = element_.interpolate(
+        map, [&](const Point& x) -> Vector { return Vector(0.3, -1.1) + slope * x; });
+    EXPECT_LT((interpolated - coefficients).norm(), 1e-12);
     for (const Point& x : triangle_rule().points) {
       EXPECT_LT((element_.values(map, x) * coefficients - field(x)).norm(), 1e-12);
       EXPECT_NEAR(element_.reference_divergences(x).dot(coefficients) / map.determinant, slope.trace(),
