@@ -52,7 +52,8 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   Completed all = complete(*discretization_, *condensed_, found.clearance,
                            exact ? open_unknowns(found.clearance) : std::vector<int>{}, progress);
   Fields fields{std::move(all.fields.stress), std::move(all.fields.displacement),
-                all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
+                all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling),
+                found.outcome};
   Solution solution = summarize(*discretization_, std::move(fields), settings, progress);
   solution.summary.reused = reused_;
   return solution;

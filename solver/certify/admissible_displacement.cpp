@@ -33,38 +33,33 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
                                                const Eigen::VectorXd& coupling)
     : problem_(problem),
       components_(problem.spaces().components),
+      clearance_(problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()))),
       points_(displacement_at_corners(problem, solution)),
       scale_(points_.cwiseAbs().maxCoeff()) {
-  const Eigen::VectorXd clearance = clearance_of(coupling);
-  constrain_points(clearance);
+  constrain_points();
   set_middles(coupling);
   for (const BoundaryPart& part : problem.mesh.boundary) {
     if (const auto* fixed = condition_on<Fixed>(problem.problem, part.name)) fix(part, *fixed);
     if (condition_on<Roller>(problem.problem, part.name)) roll(part);
   }
-  for (const ContactEdge& contact : problem.clearance.edges) meet(contact, clearance);
+  for (const ContactEdge& contact : problem.clearance.edges) meet(contact);
 }
 
-Eigen::VectorXd AdmissibleDisplacement::clearance_of(const Eigen::VectorXd& coupling) const {
-  return problem_.clearance.clearance(coupling.tail(problem_.traces.contact_unknowns()));
-}
-
-void AdmissibleDisplacement::relax(const Eigen::VectorXd& coupling, Progress& progress) {
+void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progress& progress) {
   const Mesh& mesh = problem_.mesh;
-  const Eigen::VectorXd clearance = clearance_of(coupling);
   QuadraticValues values{points_.row(0), middles_.row(0), std::vector<bool>(mesh.points.size()),
                          std::vector<bool>(mesh.edges.size())};
   for (const auto& [point, value] : fixed_points_) values.held_points[point] = true;
   for (const BoundaryPart& part : mesh.boundary)
     if (condition_on<Fixed>(problem_.problem, part.name))
       for (const int edge : part.edges) values.held_middles[edge] = true;
-  const auto touches = [&](const ContactEdge& contact, int k) { return clearance[contact.rows[k]] <= 0; };
+  const auto touches = [&](const ContactEdge& contact, int k) { return clearance_[contact.rows[k]] <= 0; };
   for (const ContactEdge& contact : problem_.clearance.edges) {
     values.held_middles[contact.edge] = touches(contact, 0) && touches(contact, 1);
     for (int k = 0; k < 2; ++k)
       if (touches(contact, k)) values.held_points[mesh.edges[contact.edge][k]] = true;
   }
-  signorini::relax(problem_, values, progress);
+  signorini::relax(problem_, values, work, steps, progress);
   points_.row(0) = values.points;
   middles_.row(0) = values.middles;
   for (const ContactEdge& contact : problem_.clearance.edges)
@@ -144,7 +139,7 @@ void AdmissibleDisplacement::refuse(const std::string& reason) {
 }
 
 /// The points of Γ_D get u_D; those of Γ_C and of rollers the nearest value that their edges allow.
-void AdmissibleDisplacement::constrain_points(const Eigen::VectorXd& clearance) {
+void AdmissibleDisplacement::constrain_points() {
   const Mesh& mesh = problem_.mesh;
   for (const BoundaryPart& part : mesh.boundary)
     if (const auto* fixed = condition_on<Fixed>(problem_.problem, part.name))
@@ -160,7 +155,7 @@ void AdmissibleDisplacement::constrain_points(const Eigen::VectorXd& clearance) 
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
       scale_ = std::max(scale_, std::abs(g));
-      const bool touches = clearance[contact.rows[k]] <= 0;
+      const bool touches = clearance_[contact.rows[k]] <= 0;
       constraints[mesh.edges[contact.edge][k]].push_back({direction(contact), g, touches});
     }
   for (const auto& [point, own] : constraints) admit(point, own);
@@ -228,13 +223,13 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
   }
 }
 
-void AdmissibleDisplacement::meet(const ContactEdge& contact, const Eigen::VectorXd& clearance) {
+void AdmissibleDisplacement::meet(const ContactEdge& contact) {
   const auto& [a, b] = problem_.mesh.edges[contact.edge];
   const Eigen::VectorXd n = direction(contact);
   const auto touches = [&](int point, int k) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kRounding * scale_;
   };
-  const bool closed = clearance[contact.rows[0]] <= 0 && clearance[contact.rows[1]] <= 0;
+  const bool closed = clearance_[contact.rows[0]] <= 0 && clearance_[contact.rows[1]] <= 0;
   if (closed && touches(a, 0) && touches(b, 1))
     close(contact);
   else

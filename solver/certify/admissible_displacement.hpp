@@ -26,9 +26,9 @@ class AdmissibleDisplacement {
   AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
                          const Eigen::VectorXd& coupling);
 
-  /// Lowers the energy of a membrane's displacement, which stays admissible: see relaxation.hpp. What is
-  /// lifted stays as it is, and so do the values that touch.
-  void relax(const Eigen::VectorXd& coupling, Progress& progress);
+  /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp. What
+  /// is lifted stays as it is, and so do the values that touch.
+  void relax(const Eigen::VectorXd& work, int steps, Progress& progress);
 
   template <int D>
   Quadratic<D> on(int t) const {
@@ -64,13 +64,12 @@ class AdmissibleDisplacement {
   using Values = std::function<Eigen::VectorXd(double s)>;
 
   void set_middles(const Eigen::VectorXd& coupling);
-  Eigen::VectorXd clearance_of(const Eigen::VectorXd& coupling) const;
-  void constrain_points(const Eigen::VectorXd& clearance);
+  void constrain_points();
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);
   void fix(const BoundaryPart& part, const Fixed& condition);
   void roll(const BoundaryPart& part);
-  void meet(const ContactEdge& contact, const Eigen::VectorXd& clearance);
+  void meet(const ContactEdge& contact);
   void close(const ContactEdge& contact);
   void lower_below(const ContactEdge& contact);
   void add_lift(int edge, const Values& d);
@@ -83,6 +82,7 @@ class AdmissibleDisplacement {
 
   const Discretization& problem_;
   int components_;
+  Eigen::VectorXd clearance_;  ///< a value a row of the clearance space
   Eigen::MatrixXd points_;   ///< a column a point
   Eigen::MatrixXd middles_;  ///< a column an edge
   double scale_;             ///< max |v|

@@ -43,6 +43,11 @@ struct Potential {
   std::vector<double> at_nodes, means;
 };
 
+double value_or_zero(const std::unordered_map<int, double>& values, int key) {
+  const auto found = values.find(key);
+  return found == values.end() ? 0 : found->second;
+}
+
 }  // namespace
 
 ContactPressure::ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
@@ -61,6 +66,16 @@ ContactPressure::ContactPressure(const Discretization& problem, const Eigen::Mat
     else
       add_airy(problem, chain, potential.at_nodes, potential.means);
   }
+}
+
+Quadratic<1> ContactPressure::potential_on(const Mesh& mesh, int t) const {
+  Quadratic<1> values = Quadratic<1>::Zero();
+  if (potential_at_points.empty()) return values;
+  for (int k = 0; k < 3; ++k) {
+    values[k] = value_or_zero(potential_at_points, mesh.triangles[t][k]);
+    values[3 + k] = value_or_zero(potential_at_middles, mesh.triangle_edges[t][k]);
+  }
+  return values;
 }
 
 void ContactPressure::refuse(const Discretization& problem, const Chain& chain, const std::string& what) {

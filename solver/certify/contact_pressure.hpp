@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "certify/local_fields.hpp"
 #include "certify/pressure_chain.hpp"
 
 namespace signorini {
@@ -26,6 +27,9 @@ struct ContactPressure {
   /// `clearance`: a value a row of the clearance space.
   ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
                   const Eigen::VectorXd& clearance);
+
+  /// Ψ on a triangle.
+  Quadratic<1> potential_on(const Mesh& mesh, int t) const;
 
   /// At the first and the second point of each edge of the clearance space.
   std::vector<std::array<double, 2>> at_ends;

@@ -38,7 +38,7 @@ struct Side {
 class Minimization {
  public:
   Minimization(const Discretization& problem, const AdmissibleDisplacement& v,
-               const Eigen::VectorXd& clearance, ContactPressure& pressure)
+               const Eigen::VectorXd& clearance, ContactPressure& pressure, const StressField& d)
       : problem_(problem),
         v_(v),
         pressure_(pressure),
@@ -50,7 +50,7 @@ class Minimization {
     for (const auto& [edge, value] : pressure.potential_at_middles)
       if (nodes_.at_middle(edge) >= 0) potential_[nodes_.at_middle(edge)] = value;
     for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i, clearance);
-    assemble();
+    assemble(d);
   }
 
   /// Goes towards the minimum as far as p* ≥ 0 allows. Returns false once it is there.
@@ -89,25 +89,31 @@ class Minimization {
   }
 
  private:
-  void assemble() {
+  void assemble(const StressField& d) {
     LawField<1> law(problem_.problem.material);
     std::vector<Eigen::Triplet<double>> entries;
     for (const int t : nodes_.triangles()) {
       const AffineMap map(problem_.mesh.corners(t));
       const std::array<int, 6> nodes = nodes_.on(t);
       Eigen::Matrix<double, 6, 6> own = Eigen::Matrix<double, 6, 6>::Zero();
+      Eigen::Matrix<double, 6, 1> towards = Eigen::Matrix<double, 6, 1>::Zero();
       for (int q = 0; q < TriangleRule::size; ++q) {
         const Point& reference = triangle_rule().points[q];
         const Eigen::Matrix<double, 2, 6> rises =
             map.jacobian.inverse().transpose() * quadratic_gradients(reference);
         Eigen::Matrix<double, 2, 6> curls;
         curls << rises.row(1), -rises.row(0);
-        own += 2 * triangle_rule().weights[q] * map.determinant * curls.transpose() *
-               law(map(reference)).compliance * curls;
+        const Eigen::Matrix<double, 6, 2> strains = 2 * triangle_rule().weights[q] * map.determinant *
+                                                    curls.transpose() * law(map(reference)).compliance;
+        own += strains * curls;
+        if (d) towards += strains * d(t, reference);
       }
-      for (int a = 0; a < 6; ++a)
+      for (int a = 0; a < 6; ++a) {
+        if (nodes[a] < 0) continue;
+        slope_[nodes[a]] -= towards[a];
         for (int b = 0; b < 6; ++b)
-          if (nodes[a] >= 0 && nodes[b] >= 0) entries.emplace_back(nodes[a], nodes[b], own(a, b));
+          if (nodes[b] >= 0) entries.emplace_back(nodes[a], nodes[b], own(a, b));
+      }
     }
     curvature_.resize(nodes_.size(), nodes_.size());
     curvature_.setFromTriplets(entries.begin(), entries.end());
@@ -217,9 +223,10 @@ class Minimization {
 }  // namespace
 
 void minimize_potential(const Discretization& problem, const AdmissibleDisplacement& v,
-                        const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress) {
+                        const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress,
+                        const StressField& d) {
   if (pressure.potential_at_points.empty()) return;
-  Minimization minimization(problem, v, clearance, pressure);
+  Minimization minimization(problem, v, clearance, pressure, d);
   for (int i = 0; i < kSteps && minimization.step(); ++i) progress.check();
   minimization.store();
 }

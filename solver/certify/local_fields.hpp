@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "certify/tensor.hpp"
@@ -55,6 +56,9 @@ CornerWeights corner_weights();
 template <int D>
 using Quadratic = Eigen::Matrix<double, D, 6>;
 
+/// A stress of a membrane, by the triangle and the point of the reference triangle.
+using StressField = std::function<Vector(int t, const Point& reference)>;
+
 /// The six functions of P2 at a point of the reference triangle, and their gradients there by columns.
 Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
 Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference);
@@ -67,6 +71,12 @@ Tensor<D> gradient(const Eigen::Matrix2d& inverse_jacobian, const Eigen::Matrix<
   for (int c = 0; c < D; ++c)
     tensor.template segment<2>(2 * c) = (reference.row(c) * inverse_jacobian).transpose();
   return tensor;
+}
+
+/// The curl (∂_y Ψ, −∂_x Ψ) of a function on the triangle with the given reference gradient.
+inline Vector curl(const Eigen::Matrix2d& inverse_jacobian, const Eigen::RowVector2d& reference) {
+  const Tensor<1> rise = gradient<1>(inverse_jacobian, reference);
+  return {rise[1], -rise[0]};
 }
 
 }  // namespace signorini

@@ -12,11 +12,6 @@ std::vector<Point> points_of(const std::vector<WeightedPoint>& rule) {
   return points;
 }
 
-double value_or_zero(const std::unordered_map<int, double>& values, int key) {
-  const auto found = values.find(key);
-  return found == values.end() ? 0 : found->second;
-}
-
 }  // namespace
 
 TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
@@ -26,6 +21,10 @@ TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
   skew += other.skew;
   stress += other.stress;
   energy += other.energy;
+  span += other.span;
+  along += other.along;
+  known += other.known;
+  moved += other.moved;
   return *this;
 }
 
@@ -39,23 +38,32 @@ MembraneSums::Rule::Rule(const Spaces& spaces, int cuts)
   }
 }
 
-MembraneSums::MembraneSums(const Discretization& problem, const Solution& solution,
-                           const AdmissibleDisplacement& v, const ContactPressure& pressure)
+MembraneSums::MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress,
+                           const AdmissiblePair& pair)
     : problem_(problem),
-      solution_(solution),
-      v_(v),
-      pressure_(pressure),
+      stress_(stress),
+      pair_(pair),
       balance_(problem),
       plain_(problem.spaces(), 1),
       composite_(problem.spaces(), kCuts) {}
 
+MembraneSums::MembraneSums(const PatchPairs& pairs)
+    : MembraneSums(pairs.problem(), pairs.stress(), pairs.first()) {
+  second_ = &pairs.second();
+  change_ = &pairs.change();
+}
+
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& load) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
-  const Quadratic<1> v = v_.on<1>(t);
-  const Quadratic<1> potential = potential_on(t);
+  const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.pressure.potential_on(problem_.mesh, t);
+  Quadratic<1> w = Quadratic<1>::Zero(), potential_of_tau = Quadratic<1>::Zero();
+  if (second_) {
+    w = v - second_->v.on<1>(t);
+    potential_of_tau = potential - second_->pressure.potential_on(problem_.mesh, t);
+  }
   const std::optional<LinearBalance::Coefficients> balance = balance_(t, load);
-  const bool curled = !potential.isZero(0), lifted = v_.is_lifted(t);
+  const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
   const Rule& rule = lifted ? composite_ : plain_;
   TriangleSums sums;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
@@ -64,15 +72,13 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     const auto& [compliance, stiffness] = law(x);
     const double weight = share * map.determinant;
     const double f = lifted ? problem_.problem.body(0, x) : load.at_points(t)[q];
-    const Tensor<1> sigma = rule.stress(q, map, solution_.stress.col(t));
+    const Tensor<1> sigma = rule.stress(q, map, stress_.col(t));
     Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
-    if (lifted) v_.add_lifts<1>(t, reference, inverse, value, slope);
+    if (lifted) pair_.v.add_lifts<1>(t, reference, inverse, value, slope);
     Tensor<1> correction = Tensor<1>::Zero();
-    if (curled) {
-      const Tensor<1> rise = gradient<1>(inverse, potential * rule.gradients[q].transpose());
-      correction << rise[1], -rise[0];
-    }
+    if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
+    if (change_) correction += rule.stress(q, map, change_->col(t));
     if (balance) correction += rule.balance(q, map, *balance);
     const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
     sums.gap += weight * gap.dot(stiffness * gap);
@@ -80,19 +86,16 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     sums.correction += weight * correction.dot(compliance * correction);
     sums.stress += weight * sigma.dot(compliance * sigma);
     sums.energy += weight * (0.5 * slope.dot(stiffness * slope) - f * value[0]);
+    if (!second_) continue;
+    const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),
+                    moved = stiffness * strain,
+                    tau = curl(inverse, potential_of_tau * rule.gradients[q].transpose());
+    sums.span += weight * (moved + tau).dot(compliance * (moved + tau));
+    sums.along += weight * (moved + tau).dot(compliance * correction);
+    sums.known += weight * gap.dot(moved - tau);
+    sums.moved += weight * strain.dot(moved);
   }
   return sums;
-}
-
-/// The potential of the pressure.
-Quadratic<1> MembraneSums::potential_on(int t) const {
-  Quadratic<1> values = Quadratic<1>::Zero();
-  if (pressure_.potential_at_points.empty()) return values;
-  for (int k = 0; k < 3; ++k) {
-    values[k] = value_or_zero(pressure_.potential_at_points, problem_.mesh.triangles[t][k]);
-    values[3 + k] = value_or_zero(pressure_.potential_at_middles, problem_.mesh.triangle_edges[t][k]);
-  }
-  return values;
 }
 
 }  // namespace signorini

@@ -5,7 +5,7 @@
 namespace signorini {
 namespace {
 
-constexpr int kLayers = 3;
+constexpr int kLayers = 5;
 
 /// Below this part of the largest potential a value is that of a chain that changes elsewhere.
 constexpr double kNothing = 1e-9;

@@ -11,139 +11,194 @@
 namespace signorini {
 namespace {
 
-constexpr int kSteps = 3;
-
 using Local = Eigen::Matrix<double, 6, 1>;
 using LocalSquare = Eigen::Matrix<double, 6, 6>;
 
-/// The integrals over the reference triangle of products of the six functions' derivatives, and of the
-/// functions with the three hats.
-struct Reference {
-  Reference() {
+/// The integrals over the reference triangle of products of the six functions' derivatives and a weight.
+struct Products {
+  template <typename Weight>
+  explicit Products(const Weight& weight_at) {
     for (int q = 0; q < TriangleRule::size; ++q) {
       const Point& x = triangle_rule().points[q];
-      const double weight = triangle_rule().weights[q];
+      const double weight = triangle_rule().weights[q] * weight_at(x);
       const Eigen::Matrix<double, 2, 6> slope = quadratic_gradients(x);
       xx += weight * slope.row(0).transpose() * slope.row(0);
       xy += weight * (slope.row(0).transpose() * slope.row(1) + slope.row(1).transpose() * slope.row(0));
       yy += weight * slope.row(1).transpose() * slope.row(1);
-      hats += weight * quadratic_basis(x) * triangle_basis(1, x).transpose();
     }
   }
 
   LocalSquare xx = LocalSquare::Zero(), xy = LocalSquare::Zero(), yy = LocalSquare::Zero();
-  Eigen::Matrix<double, 6, 3> hats = Eigen::Matrix<double, 6, 3>::Zero();
 };
 
-/// The energy ½ ‖∇v‖²_E − (Πf, v) − <t, v> as a function of the values at the points and in the middles of
-/// the edges, which follow them.
-class Energy {
+template <typename Visit>
+void for_triangles(const Mesh& mesh, const Visit& visit) {
+  const int points = static_cast<int>(mesh.points.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto& [d, e, f] = mesh.triangle_edges[t];
+    visit(t, std::array{a, b, c, points + d, points + e, points + f});
+  }
+}
+
+Eigen::Index functions(const Mesh& mesh) {
+  return static_cast<Eigen::Index>(mesh.points.size() + mesh.edges.size());
+}
+
+/// The second derivative of ½ ‖∇v‖²_E. The modulus is constant on each triangle, or linear: then it is that
+/// at the corners times the hats.
+class Curvature {
  public:
-  explicit Energy(const Discretization& problem)
-      : problem_(problem),
-        points_(static_cast<int>(problem.mesh.points.size())),
-        moduli_(3, problem.triangles()) {
-    LawField<1> law(problem.problem.material);
-    for (int t = 0; t < problem.triangles(); ++t) {
-      const AffineMap map(problem.mesh.corners(t));
-      const Eigen::Matrix2d inverse = map.jacobian.inverse();
-      const Eigen::Matrix2d e =
-          map.determinant * inverse * law(problem.mesh.centroid(t)).stiffness * inverse.transpose();
-      moduli_.col(t) << e(0, 0), e(0, 1), e(1, 1);
-    }
+  explicit Curvature(const Discretization& problem) : mesh_(problem.mesh) {
+    if (problem.element.has_constant_material())
+      products_.emplace_back([](const Point&) { return 1.; });
+    else
+      for (int z = 0; z < 3; ++z)
+        products_.emplace_back([z](const Point& x) { return triangle_basis(1, x)[z]; });
+    take_moduli(problem);
   }
 
-  Eigen::Index size() const { return points_ + static_cast<Eigen::Index>(problem_.mesh.edges.size()); }
-
-  /// The second derivative times v.
   void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
     product.setZero();
-    for_triangles([&](int t, const std::array<int, 6>& nodes) {
-      Local own;
+    for_triangles(mesh_, [&](int t, const std::array<int, 6>& nodes) {
+      Local own, change = Local::Zero();
       for (int k = 0; k < 6; ++k) own[k] = v[nodes[k]];
-      const Local change = moduli_(0, t) * (reference_.xx * own) + moduli_(1, t) * (reference_.xy * own) +
-                           moduli_(2, t) * (reference_.yy * own);
+      for (std::size_t i = 0; i < products_.size(); ++i) {
+        const Eigen::Vector3d e = modulus(t, i);
+        change +=
+            e[0] * (products_[i].xx * own) + e[1] * (products_[i].xy * own) + e[2] * (products_[i].yy * own);
+      }
       for (int k = 0; k < 6; ++k) product[nodes[k]] += change[k];
     });
   }
 
   Eigen::VectorXd diagonal() const {
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(size());
-    for_triangles([&](int t, const std::array<int, 6>& nodes) {
-      for (int k = 0; k < 6; ++k)
-        diagonal[nodes[k]] += moduli_(0, t) * reference_.xx(k, k) + moduli_(1, t) * reference_.xy(k, k) +
-                              moduli_(2, t) * reference_.yy(k, k);
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(functions(mesh_));
+    for_triangles(mesh_, [&](int t, const std::array<int, 6>& nodes) {
+      for (std::size_t i = 0; i < products_.size(); ++i) {
+        const Eigen::Vector3d e = modulus(t, i);
+        for (int k = 0; k < 6; ++k)
+          diagonal[nodes[k]] +=
+              e[0] * products_[i].xx(k, k) + e[1] * products_[i].xy(k, k) + e[2] * products_[i].yy(k, k);
+      }
     });
     return diagonal;
   }
 
-  Eigen::VectorXd load() const {
-    Eigen::VectorXd load = Eigen::VectorXd::Zero(size());
-    const Mesh& mesh = problem_.mesh;
-    for_triangles([&](int t, const std::array<int, 6>& nodes) {
-      const double twice_area = AffineMap(mesh.corners(t)).determinant;
-      const Local own = twice_area * reference_.hats * load_at_corners(t, twice_area);
-      for (int k = 0; k < 6; ++k) load[nodes[k]] += own[k];
-    });
-    const TractionField traction(problem_.problem, mesh);
-    for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
-      if (!traction.acts_on(edge)) continue;
-      for (int q = 0; q < EdgeRule::size; ++q) {
-        const double s = edge_rule().points[q],
-                     force = edge_rule().weights[q] * mesh.length(edge) * traction(edge, 0, s);
-        load[mesh.edges[edge][0]] += force * (1 - s) * (1 - 2 * s);
-        load[mesh.edges[edge][1]] += force * s * (2 * s - 1);
-        load[points_ + edge] += force * 4 * s * (1 - s);
-      }
-    }
-    return load;
-  }
-
  private:
-  /// Its mean will do for the nonconforming scheme.
-  Eigen::Vector3d load_at_corners(int t, double twice_area) const {
-    if (problem_.spaces().order == 1) return LoadValues<1>(problem_).projection(t).transpose();
-    return Eigen::Vector3d::Constant(2 / twice_area * problem_.load(0, t));
+  /// For the derivatives on the reference triangle: xx, xy, yy.
+  Eigen::Vector3d modulus(int t, std::size_t i) const {
+    return moduli_.col(t).segment<3>(3 * static_cast<Eigen::Index>(i));
   }
 
-  template <typename Visit>
-  void for_triangles(const Visit& visit) const {
-    const Mesh& mesh = problem_.mesh;
-    for (int t = 0; t < problem_.triangles(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      const auto& [d, e, f] = mesh.triangle_edges[t];
-      visit(t, {a, b, c, points_ + d, points_ + e, points_ + f});
+  void take_moduli(const Discretization& problem) {
+    LawField<1> law(problem.problem.material);
+    const bool constant = products_.size() == 1;
+    const CornerWeights weights = corner_weights();
+    moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, problem.triangles());
+    for (int t = 0; t < problem.triangles(); ++t) {
+      const AffineMap map(mesh_.corners(t));
+      const Eigen::Matrix2d inverse = map.jacobian.inverse();
+      const auto at = [&](const Point& x) -> Eigen::Vector3d {
+        const Eigen::Matrix2d e = map.determinant * inverse * law(x).stiffness * inverse.transpose();
+        return {e(0, 0), e(0, 1), e(1, 1)};
+      };
+      if (constant)
+        moduli_.col(t) = at(mesh_.centroid(t));
+      else
+        for (int q = 0; q < TriangleRule::size; ++q)
+          moduli_.col(t).reshaped(3, 3) += at(map(triangle_rule().points[q])) * weights.col(q).transpose();
     }
   }
 
-  const Discretization& problem_;
-  const Reference reference_;
-  int points_;
-  Eigen::Matrix3Xd moduli_;  ///< of each triangle, for the derivatives on the reference triangle: xx, xy, yy
+  const Mesh& mesh_;
+  std::vector<Products> products_;
+  Eigen::MatrixXd moduli_;
 };
+
+/// Πf at the corners. Its mean will do for the nonconforming scheme.
+Eigen::Vector3d load_at_corners(const Discretization& problem, int t, double twice_area) {
+  if (problem.spaces().order == 1) return LoadValues<1>(problem).projection(t).transpose();
+  return Eigen::Vector3d::Constant(2 / twice_area * problem.load(0, t));
+}
+
+/// (φ, hat) for the six functions and the three hats, on the reference triangle.
+Eigen::Matrix<double, 6, 3> products_with_hats() {
+  Eigen::Matrix<double, 6, 3> products = Eigen::Matrix<double, 6, 3>::Zero();
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point& x = triangle_rule().points[q];
+    products += triangle_rule().weights[q] * quadratic_basis(x) * triangle_basis(1, x).transpose();
+  }
+  return products;
+}
+
+void add_work_of_traction(const Discretization& problem, Eigen::VectorXd& work) {
+  const Mesh& mesh = problem.mesh;
+  const TractionField traction(problem.problem, mesh);
+  const Eigen::Index points = static_cast<Eigen::Index>(mesh.points.size());
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    for (int q = 0; q < EdgeRule::size; ++q) {
+      const double s = edge_rule().points[q],
+                   force = edge_rule().weights[q] * mesh.length(edge) * traction(edge, 0, s);
+      work[mesh.edges[edge][0]] += force * (1 - s) * (1 - 2 * s);
+      work[mesh.edges[edge][1]] += force * s * (2 * s - 1);
+      work[points + edge] += force * 4 * s * (1 - s);
+    }
+  }
+}
 
 }  // namespace
 
-void relax(const Discretization& problem, QuadraticValues& values, Progress& progress) {
-  const Energy energy(problem);
+Eigen::VectorXd work_of_loads(const Discretization& problem) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
+  const Eigen::Matrix<double, 6, 3> hats = products_with_hats();
+  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const double twice_area = AffineMap(problem.mesh.corners(t)).determinant;
+    const Local own = twice_area * hats * load_at_corners(problem, t, twice_area);
+    for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
+  });
+  add_work_of_traction(problem, work);
+  return work;
+}
+
+Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField& tau) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
+  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const AffineMap map(problem.mesh.corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    Local own = Local::Zero();
+    for (int q = 0; q < TriangleRule::size; ++q) {
+      const Point& x = triangle_rule().points[q];
+      own += triangle_rule().weights[q] * map.determinant * quadratic_gradients(x).transpose() * inverse *
+             tau(t, x);
+    }
+    for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
+  });
+  return work;
+}
+
+void relax(const Discretization& problem, QuadraticValues& values, const Eigen::VectorXd& work, int steps,
+           Progress& progress) {
+  const Curvature curvature(problem);
   const Eigen::Index points = values.points.size();
-  Eigen::VectorXd v(energy.size());
+  Eigen::VectorXd v(work.size());
   v << values.points, values.middles;
   // Nothing moves where the scale is 0.
-  Eigen::VectorXd scale = energy.diagonal();
+  Eigen::VectorXd scale = curvature.diagonal();
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     const bool held = i < points ? values.held_points[i] : values.held_middles[i - points];
     scale[i] = held || scale[i] == 0 ? 0 : 1 / scale[i];
   }
 
-  Eigen::VectorXd product(v.size()), residual = energy.load();
-  energy.apply(v, product);
+  Eigen::VectorXd product(v.size()), residual = work;
+  curvature.apply(v, product);
   residual -= product;
   Eigen::VectorXd direction = scale.cwiseProduct(residual);
   double size = residual.dot(direction);
-  for (int step = 0; step < kSteps && size > 0; ++step) {
+  for (int step = 0; step < steps && size > 0; ++step) {
     progress.check();
-    energy.apply(direction, product);
+    curvature.apply(direction, product);
     const double length = size / direction.dot(product);
     v += length * direction;
     residual -= length * product;

@@ -1,32 +1,37 @@
 #pragma once
 
-#include "certify/admissible_displacement.hpp"
-#include "certify/contact_pressure.hpp"
+#include "certify/admissible_pair.hpp"
 #include "certify/edge_tractions.hpp"
 #include "certify/linear_balance.hpp"
 #include "certify/macro_values.hpp"
+#include "certify/patch_pairs.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
 
 namespace signorini {
 
-/// What one triangle adds to the bound.
+/// What one triangle adds to the bound: δ = σ* − sym σ_h, and against a second pair w = v − v₂, τ = σ* − σ*₂.
 struct TriangleSums {
   double gap = 0;         ///< ‖C σ* − ε(v)‖²_E
   double direct_gap = 0;  ///< ‖C sym σ_h − ε(v)‖²_E
-  double correction = 0;  ///< ‖σ* − sym σ_h‖²_C
+  double correction = 0;  ///< ‖δ‖²_C
   double skew = 0;        ///< ‖skew σ_h‖²_C
   double stress = 0;      ///< ‖σ_h‖²_C
   double energy = 0;      ///< ½ ‖ε(v)‖²_E − (f, v)
+  double span = 0;        ///< ‖E ε(w) + τ‖²_C
+  double along = 0;       ///< (E ε(w) + τ, δ)_C
+  double known = 0;       ///< (σ* − E ε(v), E ε(w) − τ)_C
+  double moved = 0;       ///< ‖ε(w)‖²_E
 
   TriangleSums& operator+=(const TriangleSums& other);
 };
 
-/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the linear balance; v is v_h.
+/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the linear balance; v is v_h. On a
+/// patch σ* has a change of its own besides, and there is a second pair.
 class MembraneSums {
  public:
-  MembraneSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
-               const ContactPressure& pressure);
+  MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
+  explicit MembraneSums(const PatchPairs& pairs);
 
   TriangleSums operator()(int t, LawField<1>& law, LoadValues<1>& load) const;
 
@@ -41,12 +46,11 @@ class MembraneSums {
     std::vector<Eigen::Matrix<double, 2, 6>> gradients;
   };
 
-  Quadratic<1> potential_on(int t) const;
-
   const Discretization& problem_;
-  const Solution& solution_;
-  const AdmissibleDisplacement& v_;
-  const ContactPressure& pressure_;
+  const Eigen::MatrixXd& stress_;
+  const AdmissiblePair& pair_;
+  const AdmissiblePair* second_ = nullptr;
+  const Eigen::MatrixXd* change_ = nullptr;
   const LinearBalance balance_;
   Rule plain_, composite_;
 };

@@ -2,8 +2,9 @@
 
 namespace signorini {
 
-Completed complete(const Discretization& problem, CondensedContact& condensed, const Eigen::VectorXd& clearance,
-                   const std::vector<int>& exactly_open, Progress& progress) {
+Completed complete(const Discretization& problem, CondensedContact& condensed,
+                   const Eigen::VectorXd& clearance, const std::vector<int>& exactly_open,
+                   Progress& progress) {
   const Eigen::VectorXd x = condensed.traces(clearance, progress);
   Completed all{x, recover(problem, x, progress)};
   // A stiff volume (ν → 1/2) costs the factorisation digits that iterative refinement brings back.

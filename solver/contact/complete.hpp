@@ -14,8 +14,9 @@ struct Completed {
 };
 
 /// `exactly_open`: the contact unknowns whose pressure is to vanish to rounding.
-Completed complete(const Discretization& problem, CondensedContact& condensed, const Eigen::VectorXd& clearance,
-                   const std::vector<int>& exactly_open, Progress& progress);
+Completed complete(const Discretization& problem, CondensedContact& condensed,
+                   const Eigen::VectorXd& clearance, const std::vector<int>& exactly_open,
+                   Progress& progress);
 
 /// The contact unknowns with a clearance.
 std::vector<int> open_unknowns(const Eigen::VectorXd& clearance);

@@ -1,0 +1,82 @@
+#include "certify/patch.hpp"
+
+#include <algorithm>
+
+#include "mesh/bisect.hpp"
+#include "mesh/bodies.hpp"
+#include "mesh/submesh.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr int kLayers = 2;
+constexpr int kCuts = 2;
+/// Edges on which less than this part of the largest force is moved are left to their surroundings.
+constexpr double kHardly = 0.2;
+
+using PointSet = std::vector<bool>;
+
+double force_moved(const Discretization& problem, const ContactPressure& pressure, int i) {
+  const auto& [first, second] = pressure.changes[i];
+  return problem.mesh.length(problem.clearance.edges[i].edge) * std::max(std::abs(first), std::abs(second));
+}
+
+PointSet points_with_changes(const Discretization& problem, const ContactPressure& pressure) {
+  const int edges = static_cast<int>(pressure.changes.size());
+  double most = 0;
+  for (int i = 0; i < edges; ++i) most = std::max(most, force_moved(problem, pressure, i));
+  PointSet points(problem.mesh.points.size(), false);
+  for (int i = 0; i < edges; ++i)
+    if (force_moved(problem, pressure, i) > kHardly * most)
+      for (const int point : problem.mesh.edges[problem.clearance.edges[i].edge]) points[point] = true;
+  return points;
+}
+
+/// The triangles with a corner in the set, in ascending order.
+std::vector<int> triangles_at(const Mesh& mesh, const PointSet& points) {
+  std::vector<int> triangles;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    if (std::ranges::any_of(mesh.triangles[t], [&](int point) { return points[point]; }))
+      triangles.push_back(t);
+  return triangles;
+}
+
+/// The triangles `all` of the whole mesh, those of the core cut.
+Patch make_patch(const Mesh& whole, std::vector<int> all, const std::vector<int>& core) {
+  Submesh part(whole, all);
+  Mesh mesh = with_longest_edges_first(std::move(part.mesh));
+  for (int cut = 0; cut < kCuts; ++cut) {
+    std::vector<int> marked, parents;
+    for (int t = 0; t < static_cast<int>(all.size()); ++t)
+      if (std::ranges::binary_search(core, all[t])) marked.push_back(t);
+    mesh = bisect(mesh, marked, parents);
+    for (int& parent : parents) parent = all[parent];
+    all = std::move(parents);
+  }
+  return {std::make_shared<const Mesh>(std::move(mesh)), std::move(all), std::move(part.cut)};
+}
+
+}  // namespace
+
+std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
+                                                  const ContactPressure& pressure) {
+  const Mesh& whole = problem.mesh;
+  PointSet points = points_with_changes(problem, pressure);
+  const std::vector<int> core = triangles_at(whole, points);
+  if (core.empty()) return {};
+  std::vector<int> layers = core;
+  for (int layer = 1; layer < kLayers; ++layer) {
+    for (const int t : layers)
+      for (const int point : whole.triangles[t]) points[point] = true;
+    layers = triangles_at(whole, points);
+  }
+  std::vector<Patch> patches;
+  for (std::vector<int>& piece : bodies(Submesh(whole, layers).mesh)) {
+    for (int& t : piece) t = layers[t];
+    std::ranges::sort(piece);
+    patches.push_back(make_patch(whole, std::move(piece), core));
+  }
+  return patches;
+}
+
+}  // namespace signorini

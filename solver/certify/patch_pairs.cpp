@@ -1,0 +1,130 @@
+#include "certify/patch_pairs.hpp"
+
+#include <limits>
+
+#include "certify/least_potential.hpp"
+#include "certify/relaxation.hpp"
+
+namespace signorini {
+namespace {
+
+/// A scalar on the cut. `value` takes an edge of the whole mesh, s ∈ [0, 1] on it and the normal.
+VectorField on_cut(const Mesh& mesh, const std::vector<int>& cut,
+                   std::function<double(int edge, double s, const Vector& normal)> value) {
+  const auto at_nearest = [&mesh, &cut, value = std::move(value)](const Point& x, const Vector& normal) {
+    double least = std::numeric_limits<double>::infinity(), s_there = 0;
+    int nearest = -1;
+    for (const int edge : cut) {
+      const Point &a = mesh.points[mesh.edges[edge][0]], &b = mesh.points[mesh.edges[edge][1]];
+      const double s = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0., 1.);
+      const double distance = (a + s * (b - a) - x).squaredNorm();
+      if (distance >= least) continue;
+      least = distance;
+      s_there = s;
+      nearest = edge;
+    }
+    return value(nearest, s_there, normal);
+  };
+  return Field(at_nearest, "the certificate's patch");
+}
+
+Fixed displacement_on_cut(const Discretization& whole, const AdmissibleDisplacement& v, const Patch& patch) {
+  return {on_cut(whole.mesh, patch.cut,
+                 [&v](int edge, double s, const Vector&) { return v.on_edge(edge, s)[0]; })};
+}
+
+/// σ*n as the triangle of the patch behind the cut has it.
+Traction traction_on_cut(const Discretization& whole, const Eigen::MatrixXd& stress,
+                         const ContactPressure& pressure, const Patch& patch) {
+  const Mesh& mesh = whole.mesh;
+  std::vector<bool> inside(mesh.triangles.size(), false);
+  for (const int t : patch.parents) inside[t] = true;
+  return {on_cut(mesh, patch.cut, [&, inside](int edge, double s, const Vector& normal) {
+    const auto& [one, other] = mesh.edge_triangles[edge];
+    const int t = inside[one] ? one : other;
+    const AffineMap map(mesh.corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    const auto& [a, b] = mesh.edges[edge];
+    const Point x = mesh.points[a] + s * (mesh.points[b] - mesh.points[a]);
+    const Point reference = inverse * (x - map.origin);
+    const Vector sigma = whole.spaces().row.values(map, reference) * stress.col(t);
+    const Eigen::RowVector2d rise =
+        pressure.potential_on(mesh, t) * quadratic_gradients(reference).transpose();
+    return normal.dot(sigma + curl(inverse, rise));
+  })};
+}
+
+/// σ_h in the basis of the triangles of the patch.
+Eigen::MatrixXd on_patch(const Discretization& whole, const Eigen::MatrixXd& stress, const Patch& patch) {
+  const RaviartThomas& row = whole.spaces().row;
+  Eigen::MatrixXd all(stress.rows(), static_cast<Eigen::Index>(patch.parents.size()));
+  for (int t = 0; t < static_cast<int>(patch.parents.size()); ++t) {
+    const int parent = patch.parents[t];
+    const AffineMap around(whole.mesh.corners(parent));
+    const Eigen::Matrix2d inverse = around.jacobian.inverse();
+    all.col(t) = row.interpolate(AffineMap(patch.mesh->corners(t)), [&](const Point& x) -> Vector {
+      return row.values(around, inverse * (x - around.origin)) * stress.col(parent);
+    });
+  }
+  return all;
+}
+
+Vector slope(const AdmissibleDisplacement& v, const AffineMap& map, int t, const Point& reference) {
+  return gradient<1>(map.jacobian.inverse(), v.on<1>(t) * quadratic_gradients(reference).transpose());
+}
+
+}  // namespace
+
+PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stress, const AdmissiblePair& pair,
+                       Patch patch, Progress& progress)
+    : patch_(std::move(patch)),
+      held_(whole.problem, patch_, displacement_on_cut(whole, pair.v, patch_), progress),
+      loaded_(whole.problem, patch_, traction_on_cut(whole, stress, pair.pressure, patch_), progress),
+      stress_(on_patch(whole, stress, patch_)),
+      change_(loaded_.solution().stress - stress_),
+      first_(first_pair(progress)),
+      second_(second_pair(progress)) {}
+
+bool PatchPairs::are_admissible() const {
+  return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.unmet.empty();
+}
+
+AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
+  AdmissiblePair pair{{held_.problem(), held_.solution(), held_.coupling()},
+                      {loaded_.problem(), loaded_.solution().stress, loaded_.clearance()}};
+  pair.v.relax(work_of_loads(held_.problem()), kStepsFromAverage, progress);
+  minimize_potential(loaded_.problem(), pair.v, loaded_.clearance(), pair.pressure, progress);
+  return pair;
+}
+
+/// δ of the first pair.
+Vector PatchPairs::delta(int t, const Point& reference) const {
+  const AffineMap map(patch_.mesh->corners(t));
+  const Eigen::RowVector2d rise =
+      first_.pressure.potential_on(*patch_.mesh, t) * quadratic_gradients(reference).transpose();
+  return problem().spaces().row.values(map, reference) * change_.col(t) + curl(map.jacobian.inverse(), rise);
+}
+
+/// v₂ minimises ‖E ε(v − v₂) − δ‖_C, and then σ*₂ what is left of that.
+AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
+  constexpr int steps = 40;
+  LawField<1> law(problem().problem.material);
+  const auto stress_of = [&](const AdmissibleDisplacement& v, int t, const Point& reference) -> Vector {
+    const AffineMap map(patch_.mesh->corners(t));
+    return law(map(reference)).stiffness * slope(v, map, t, reference);
+  };
+  AdmissiblePair pair = first_;
+  const Eigen::VectorXd work = work_of_stress(
+      problem(), [&](int t, const Point& x) -> Vector { return stress_of(first_.v, t, x) - delta(t, x); });
+  pair.v.relax(work, steps, progress);
+  // σ*₂ = σ* − δ + E ε(v − v₂) would be exact.
+  minimize_potential(loaded_.problem(), first_.v, loaded_.clearance(), pair.pressure, progress,
+                     [&](int t, const Point& x) -> Vector {
+                       const AffineMap map(patch_.mesh->corners(t));
+                       return stress_of(first_.v, t, x) - stress_of(pair.v, t, x) -
+                              problem().spaces().row.values(map, x) * change_.col(t);
+                     });
+  return pair;
+}
+
+}  // namespace signorini
