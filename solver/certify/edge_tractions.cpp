@@ -56,7 +56,7 @@ int other_side(const Mesh& mesh, int edge, int t) {
 
 EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
                              const ContactPressure& pressure)
-    : problem_(problem), tractions_(problem.mesh.edges.size()) {
+    : problem_(problem), given_(problem.problem, problem.mesh), tractions_(problem.mesh.edges.size()) {
   take_from(stress);
   change_pressure(pressure);
   Eigen::Matrix3Xd moments = asymmetry(problem, stress);
@@ -64,10 +64,19 @@ EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixX
   balance(moments);
 }
 
-Eigen::Matrix2d EdgeTractions::on(int t, int e) const {
+Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
   const int edge = problem_.mesh.triangle_edges[t][e];
-  if (problem_.mesh.edge_triangles[edge][0] == t) return tractions_[edge];
-  return -tractions_[edge].rowwise().reverse();
+  Eigen::Matrix2d ends = tractions_[edge];
+  if (problem_.mesh.edge_triangles[edge][0] != t) ends = -ends.rowwise().reverse().eval();
+  Eigen::Matrix<double, 2, 3> all;
+  all << ends, ends.rowwise().mean();
+  if (!given_.acts_on(edge)) return all;
+  for (int c = 0; c < 2; ++c) {
+    // What t has beyond its linear part is the same from either end.
+    const auto own = [&](double s) { return given_(edge, c, s); };
+    all.row(c) += (projection_at_nodes(2, own) - projection_at_nodes(1, own)).transpose();
+  }
+  return all;
 }
 
 void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
@@ -88,18 +97,17 @@ void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
 void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
   const Mesh& mesh = problem_.mesh;
   for (int t = 0; t < problem_.triangles(); ++t) moments.col(t).array() -= problem_.couples[t] / 3;
-  const TractionField traction(problem_.problem, mesh);
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
-    if (!traction.acts_on(edge)) continue;
+    if (!given_.acts_on(edge)) continue;
     const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
     const int from = (e + 1) % 3, to = (e + 2) % 3;
     const bool forward = mesh.triangles[t][from] == mesh.edges[edge][0];
     for (int c = 0; c < 2; ++c) {
       const LocalVector linear =
-          project_onto_edge(1, edge_moments(1, [&](double s) { return traction(edge, c, s); }));
+          project_onto_edge(1, edge_moments(1, [&](double s) { return given_(edge, c, s); }));
       at(edge).row(c) << linear[forward ? 0 : 1], linear[forward ? 1 : 0];
     }
-    const double couple = couple_of_traction(traction, mesh, edge);
+    const double couple = couple_of_traction(given_, mesh, edge);
     for (const int z : {from, to}) moments(z, t) -= couple / 2;
   }
 }

@@ -5,11 +5,13 @@
 
 #include "certify/contact_pressure.hpp"
 #include "fem/discretization.hpp"
+#include "fem/traction_field.hpp"
 
 namespace signorini {
 
-/// Tractions on all edges of an elastic body, linear on each edge, that hold every triangle in equilibrium of
-/// forces and of moments under the discrete load, so that a symmetric stress with these tractions exists.
+/// Tractions on all edges of an elastic body, linear on each edge and quadratic on Γ_F, that hold every
+/// triangle in equilibrium of forces and of moments under the discrete load, so that a symmetric stress with
+/// these tractions exists.
 ///
 /// They are those of σ_h and two changes, each the derivative along the edges of a vector potential and so
 /// free of force: the one that turns the pressure into p* (an Airy function near Γ_C), and one that spreads
@@ -22,8 +24,8 @@ class EdgeTractions {
                 const ContactPressure& pressure);
 
   /// The traction on a triangle's local edge e from outside, per length: column 0 at corner e + 1, column 1
-  /// at corner e + 2.
-  Eigen::Matrix2d on(int t, int e) const;
+  /// at corner e + 2, column 2 in the middle.
+  Eigen::Matrix<double, 2, 3> on(int t, int e) const;
 
   const std::vector<std::string>& unmet() const { return unmet_; }
 
@@ -36,6 +38,7 @@ class EdgeTractions {
   void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& moments);
 
   const Discretization& problem_;
+  const TractionField given_;
   /// Of each edge, seen from its first triangle, at the ends in the direction in which that triangle lies on
   /// the left.
   std::vector<Eigen::Matrix2d> tractions_;

@@ -30,11 +30,9 @@ Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const 
   Eigen::Matrix<double, MacroElement::kData, 1> data;
   for (int e = 0; e < 3; ++e) {
     const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
-    const Eigen::Matrix2d ends = inverse * tractions_.on(t, e) * length;
-    data.segment<4>(4 * e) << ends.col(0), ends.col(1);
+    data.segment<6>(6 * e) = (inverse * tractions_.on(t, e) * length).reshaped();
   }
-  const Eigen::Matrix<double, 2, 3> divergence = -map.determinant * inverse * load.projection(t);
-  data.tail<6>() = divergence.reshaped();
+  data.tail<12>() = (-map.determinant * inverse * load.projection(t).balanced).reshaped();
   return data;
 }
 

@@ -42,7 +42,7 @@ class Minimization {
       : problem_(problem),
         v_(v),
         pressure_(pressure),
-        nodes_(problem, pressure),
+        nodes_(d ? PotentialNodes(problem) : PotentialNodes(problem, pressure)),
         potential_(Eigen::VectorXd::Zero(nodes_.size())),
         slope_(Eigen::VectorXd::Zero(nodes_.size())) {
     for (const auto& [point, value] : pressure.potential_at_points)
@@ -130,7 +130,7 @@ class Minimization {
     if (std::ranges::all_of(side.nodes, [](int node) { return node < 0; })) return;
     sides_.push_back(side);
     const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;
-    for (int end = 0; end < 2; ++end) sides_.back().kept[end] = open || pressure_.at_ends[i][end] == 0;
+    sides_.back().kept = {open, open};
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = edge_rule().points[q];
       const double room =
@@ -225,7 +225,7 @@ class Minimization {
 void minimize_potential(const Discretization& problem, const AdmissibleDisplacement& v,
                         const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress,
                         const StressField& d) {
-  if (pressure.potential_at_points.empty()) return;
+  if (!d && pressure.potential_at_points.empty()) return;
   Minimization minimization(problem, v, clearance, pressure, d);
   for (int i = 0; i < kSteps && minimization.step(); ++i) progress.check();
   minimization.store();

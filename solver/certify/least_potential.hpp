@@ -10,9 +10,10 @@ namespace signorini {
 ///
 ///     ‖curl Ψ − d‖²_C + <p*, g − v_n>,   p* = p_h + ∂_t Ψ ≥ 0,
 ///
-/// over the quadratic Ψ of PotentialNodes, with p* kept on open edges. Without d the stress changes least:
-/// both terms then weigh as they do in the bound where it matters, for ‖C σ* − ε(v)‖² grows by about the
-/// first of them. A primal active set: p* ≥ 0 holds after every step, so that each is an answer.
+/// over the quadratic Ψ of PotentialNodes, with p* kept on open edges. Without d the stress changes least,
+/// near the places where it does: both terms then weigh as they do in the bound where it matters, for ‖C σ* −
+/// ε(v)‖² grows by about the first of them. With d the nodes are those of the whole mesh. A primal active
+/// set: p* ≥ 0 holds after every step, so that each is an answer.
 ///
 /// `clearance`: a value a row of the clearance space.
 void minimize_potential(const Discretization& problem, const AdmissibleDisplacement& v,

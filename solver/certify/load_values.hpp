@@ -1,5 +1,6 @@
 #pragma once
 
+#include "certify/local_fields.hpp"
 #include "fem/discretization.hpp"
 
 namespace signorini {
@@ -16,16 +17,24 @@ class LoadValues {
   /// Column q: f at point q of the triangle rule. Valid until the next call.
   const AtPoints& at_points(int t);
 
-  /// Column z: (f, φ_z) for the hat function φ_z of corner z.
-  AtCorners moments(int t);
+  /// Column z: the projection of f onto P1 at corner z.
+  AtCorners linear(int t);
 
-  /// Column z: Πf at corner z, the load that σ* is in equilibrium with: the projection onto P1.
-  AtCorners projection(int t);
+  /// Πf, the load that σ* is in equilibrium with, and ‖f − Πf‖: the projection onto P2.
+  struct Projection {
+    Quadratic<D> balanced = Quadratic<D>::Zero();
+    double rest = 0;
+  };
+  /// Valid until the next call.
+  const Projection& projection(int t);
 
  private:
+  bool is_linear(int t);
+
   const Discretization& problem_;
-  int last_ = -1;
+  int last_ = -1, last_projected_ = -1;
   AtPoints at_points_ = AtPoints::Zero();
+  Projection projection_;
 };
 
 }  // namespace signorini

@@ -56,6 +56,15 @@ CornerWeights corner_weights();
 template <int D>
 using Quadratic = Eigen::Matrix<double, D, 6>;
 
+/// A linear function at the nodes of P2, from its values at the corners.
+template <int D>
+Quadratic<D> at_nodes(const Eigen::Matrix<double, D, 3>& corners) {
+  Quadratic<D> nodes;
+  nodes << corners, (corners.col(1) + corners.col(2)) / 2, (corners.col(2) + corners.col(0)) / 2,
+      (corners.col(0) + corners.col(1)) / 2;
+  return nodes;
+}
+
 /// A stress of a membrane, by the triangle and the point of the reference triangle.
 using StressField = std::function<Vector(int t, const Point& reference)>;
 

@@ -45,10 +45,47 @@ Vector scaled_normal(const Point& a, const Point& b) {
   return {b.y() - a.y(), a.x() - b.x()};
 }
 
-/// Rows of conditions on the 54 coefficients and the 18 data that they must meet.
+/// λ₀, λ₁, λ₂, and their gradients by columns.
+Eigen::Vector3d barycentric(const Point& x) {
+  return {1 - x.x() - x.y(), x.x(), x.y()};
+}
+Eigen::Matrix<double, 2, 3> barycentric_gradients() {
+  return (Eigen::Matrix<double, 2, 3>() << -1, 1, 0, -1, 0, 1).finished();
+}
+
+Eigen::Matrix<double, 3, MacroElement::kBubbles> bubbles(const Point& x) {
+  const Eigen::Vector3d lambda = barycentric(x);
+  Eigen::Matrix<double, 3, MacroElement::kBubbles> values;
+  for (int e = 0; e < 3; ++e) {
+    const int i = (e + 1) % 3, j = (e + 2) % 3;
+    const Vector t = corner(j) - corner(i);
+    for (int m = 0; m < 3; ++m)
+      values.col(3 * e + m) =
+          lambda[i] * lambda[j] * lambda[m] * Eigen::Vector3d(t.x() * t.x(), t.y() * t.y(), t.x() * t.y());
+  }
+  return values;
+}
+
+Eigen::Matrix<double, 2, MacroElement::kBubbles> divergences_of_bubbles(const Point& x) {
+  const Eigen::Vector3d lambda = barycentric(x);
+  const Eigen::Matrix<double, 2, 3> slopes = barycentric_gradients();
+  Eigen::Matrix<double, 2, MacroElement::kBubbles> values;
+  for (int e = 0; e < 3; ++e) {
+    const int i = (e + 1) % 3, j = (e + 2) % 3;
+    const Vector t = corner(j) - corner(i);
+    for (int m = 0; m < 3; ++m)
+      values.col(3 * e + m) =
+          t * t.dot(lambda[j] * lambda[m] * slopes.col(i) + lambda[i] * lambda[m] * slopes.col(j) +
+                    lambda[i] * lambda[j] * slopes.col(m));
+  }
+  return values;
+}
+
+/// Rows of conditions on the coefficients and the data that they must meet.
 struct Conditions {
-  Matrix of_stress = Matrix::Zero(54, MacroElement::kStresses);
-  Matrix of_data = Matrix::Zero(54, MacroElement::kData);
+  static constexpr int kRows = 18 + 18 + 36;
+  Matrix of_stress = Matrix::Zero(kRows, MacroElement::kStresses);
+  Matrix of_data = Matrix::Zero(kRows, MacroElement::kData);
   int rows = 0;
 
   /// Adds τ N at node i of a part to two rows.
@@ -65,10 +102,7 @@ void add_outer_tractions(Conditions& all) {
     const std::array<int, 3> nodes{0, 1, 5};
     for (int i = 0; i < 3; ++i, all.rows += 2) {
       all.add_traction(all.rows, k, nodes[i], n, 1);
-      for (int end = 0; end < 2; ++end) {
-        const double share = i == 2 ? 0.5 : (i == end ? 1 : 0);
-        all.of_data.block<2, 2>(all.rows, 4 * k + 2 * end) = share * Eigen::Matrix2d::Identity();
-      }
+      all.of_data.block<2, 2>(all.rows, 6 * k + 2 * i).setIdentity();
     }
   }
 }
@@ -88,17 +122,21 @@ void add_inner_continuity(Conditions& all) {
 
 void add_divergence(Conditions& all) {
   for (int k = 0; k < 3; ++k) {
-    const Matrix to_reference = Part(k).jacobian.inverse().transpose();
-    for (int i = 0; i < 3; ++i, all.rows += 2) {
+    const Part part(k);
+    const Matrix to_reference = part.jacobian.inverse().transpose();
+    for (int i = 0; i < 6; ++i, all.rows += 2) {
+      const Point x = part(own_node(i));
       const Matrix gradients = to_reference * quadratic_gradients(own_node(i));
       for (int j = 0; j < 6; ++j) {
         const Vector g = gradients.col(j);
         all.of_stress.block<2, 3>(all.rows, 18 * k + 3 * j) << g.x(), 0, g.y(), 0, g.y(), g.x();
       }
-      for (int z = 0; z < 3; ++z) {
-        const double share = i == 2 ? 1. / 3 : (z == (k + 1 + i) % 3 ? 1 : 0);
-        all.of_data.block<2, 2>(all.rows, 12 + 2 * z) = share * Eigen::Matrix2d::Identity();
-      }
+      all.of_stress.block<2, MacroElement::kBubbles>(all.rows, MacroElement::kPieces) =
+          divergences_of_bubbles(x);
+      const Eigen::Matrix<double, 6, 1> shares = quadratic_basis(x);
+      for (int j = 0; j < 6; ++j)
+        all.of_data.block<2, 2>(all.rows, MacroElement::kTractions + 2 * j) =
+            shares[j] * Eigen::Matrix2d::Identity();
     }
   }
 }
@@ -133,6 +171,7 @@ std::vector<MacroElement::Place> MacroElement::places(int cuts) {
                 weight,
                 k,
                 quadratic_basis(own),
+                bubbles(part(own)),
                 Eigen::Matrix<double, 2, kNodes>::Zero(),
                 Eigen::Matrix<double, kNodes, 1>::Zero()};
     const Eigen::Matrix<double, 2, 6> gradients =
@@ -140,7 +179,7 @@ std::vector<MacroElement::Place> MacroElement::places(int cuts) {
     const std::array<int, 6> nodes = nodes_of(k);
     for (int i = 0; i < 6; ++i) {
       place.displacement_gradients.col(nodes[i]) = gradients.col(i);
-      place.displacement_basis[nodes[i]] = place.stress_basis[i];
+      place.displacement_basis[nodes[i]] = place.piece_basis[i];
     }
     all.push_back(place);
   };

@@ -12,23 +12,28 @@ namespace signorini {
 /// The triangle (0,0), (1,0), (0,1) cut into three by its centroid (Alfeld split): part k lies at edge k.
 ///
 /// On it live symmetric stresses that are quadratic on each part, with continuous traction: the element of
-/// Johnson and Mercier (1978) in its quadratic form (Gong, Gopalakrishnan, Guzmán, Neilan 2023). Such a
-/// stress is determined by its traction on the three edges and its divergence up to three stresses that have
-/// neither. Displacements on it are quadratic on each part and continuous (the pair of Scott and Vogelius,
-/// which is stable here): ten nodes, the corners, the middles of the edges, the centroid, and the middles
-/// between corner i and the centroid.
+/// Johnson and Mercier (1978) in its quadratic form (Gong, Gopalakrishnan, Guzmán, Neilan 2023). To these
+/// come the cubic bubbles λ_i λ_j λ_m t tᵀ, with t along the edge between corners i and j, which have no
+/// traction on the boundary and whose divergences are all quadratic loads without force and moment (Hu, Zhang
+/// 2015). Such a stress is determined by its traction on the three edges and its divergence up to six
+/// stresses that have neither. Displacements on it are quadratic on each part and continuous (the pair of
+/// Scott and Vogelius, which is stable here): ten nodes, the corners, the middles of the edges, the centroid,
+/// and the middles between corner i and the centroid.
 struct MacroElement {
-  static constexpr int kStresses = 54;  ///< per part, per node of P2, (xx, yy, xy)
-  static constexpr int kData = 18;      ///< traction at both ends of edge 0, 1, 2; divergence at the corners
-  static constexpr int kFree = 3;
+  static constexpr int kPieces = 54;  ///< per part, per node of P2, (xx, yy, xy)
+  static constexpr int kBubbles = 9;  ///< per edge, m = 0, 1, 2
+  static constexpr int kStresses = kPieces + kBubbles;
+  /// Traction at both ends and in the middle of edge 0, 1, 2; divergence at the nodes of P2.
+  static constexpr int kTractions = 18, kData = kTractions + 12;
+  static constexpr int kFree = 6;
   static constexpr int kNodes = 10;
 
   using FromData = Eigen::Matrix<double, kStresses, kData>;
   using Free = Eigen::Matrix<double, kStresses, kFree>;
 
-  /// A stress with the given data, whose tractions are linear on the edges and whose divergence is linear on
-  /// the triangle. The traction is one per unit of the edge's parameter: τ n |e|. The data must balance: in
-  /// force and in moment.
+  /// A stress with the given data, whose tractions are quadratic on the edges and whose divergence is
+  /// quadratic on the triangle. The traction is one per unit of the edge's parameter: τ n |e|. The data must
+  /// balance: in force and in moment.
   FromData from_data;
   /// The stresses without traction and divergence.
   Free free;
@@ -38,7 +43,8 @@ struct MacroElement {
     Point point;
     double weight;  ///< all weights sum to 1/2
     int part;
-    Eigen::Matrix<double, 6, 1> stress_basis;  ///< at the nodes of the part
+    Eigen::Matrix<double, 6, 1> piece_basis;  ///< at the nodes of the part
+    Eigen::Matrix<double, 3, kBubbles> bubbles;
     Eigen::Matrix<double, 2, kNodes> displacement_gradients;
     Eigen::Matrix<double, kNodes, 1> displacement_basis;
   };
@@ -50,7 +56,8 @@ struct MacroElement {
   template <typename Coefficients>
   static Eigen::Vector3d stress(const Place& place, const Coefficients& coefficients) {
     return coefficients.template segment<18>(18 * place.part).template reshaped<Eigen::ColMajor>(3, 6) *
-           place.stress_basis;
+               place.piece_basis +
+           place.bubbles * coefficients.template tail<kBubbles>();
   }
 
   /// The node with the given number.

@@ -88,20 +88,21 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
   // σ* is the stress with the data and the free one that brings it nearest to σ_h.
   std::vector<Block<3>> sigma(points, Block<3>::Zero(3, columns)), balanced = sigma;
   Block<Eigen::Dynamic> skew_part(points, columns);
-  Eigen::Matrix3d free_matrix = Eigen::Matrix3d::Zero();
-  Block<3> free_right = Block<3>::Zero(3, columns);
+  constexpr int kFree = MacroElement::kFree;
+  Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
+  Block<kFree> free_right = Block<kFree>::Zero(kFree, columns);
   for (int q = 0; q < points; ++q) {
     const MacroRule::Values& at = rule.values[q];
     const auto of_stress = stresses(map, at.stress);
     sigma[q].noalias() = of_stress.template topRows<3>() * given.stress;
     skew_part.row(q).noalias() = of_stress.row(3) * given.stress;
     balanced[q].noalias() = (to_triangle * at.balanced).eval() * given.data;
-    const Eigen::Matrix3d own = to_triangle * at.free;
-    const Eigen::Matrix3d weighted = weight(q) * own.transpose() * law(q).compliance;
+    const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
+    const Eigen::Matrix<double, kFree, 3> weighted = weight(q) * own.transpose() * law(q).compliance;
     free_matrix += weighted * own;
     free_right += weighted * (sigma[q] - balanced[q]);
   }
-  const Block<3> free = free_matrix.ldlt().solve(free_right);
+  const Block<kFree> free = free_matrix.ldlt().solve(free_right);
 
   // v is v_h and what brings its strain nearest to C σ*.
   std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));

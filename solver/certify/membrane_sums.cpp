@@ -29,10 +29,9 @@ TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
 }
 
 MembraneSums::Rule::Rule(const Spaces& spaces, int cuts)
-    : points(composite_rule(cuts)),
-      stress(spaces, points_of(points)),
-      balance(spaces_of(Scheme::conforming, 1), points_of(points)) {
+    : points(composite_rule(cuts)), stress(spaces, points_of(points)) {
   for (const auto& [point, weight] : points) {
+    balance.push_back(QuadraticBalance::reference_values(point));
     basis.push_back(quadratic_basis(point));
     gradients.push_back(quadratic_gradients(point));
   }
@@ -62,7 +61,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     w = v - second_->v.on<1>(t);
     potential_of_tau = potential - second_->pressure.potential_on(problem_.mesh, t);
   }
-  const std::optional<LinearBalance::Coefficients> balance = balance_(t, load);
+  const std::optional<QuadraticBalance::Data> balance = balance_(t, load);
   const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
   const Rule& rule = lifted ? composite_ : plain_;
   TriangleSums sums;
@@ -79,7 +78,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     Tensor<1> correction = Tensor<1>::Zero();
     if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
     if (change_) correction += rule.stress(q, map, change_->col(t));
-    if (balance) correction += rule.balance(q, map, *balance);
+    if (balance) correction += map.jacobian * (rule.balance[q] * *balance) / map.determinant;
     const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
     sums.gap += weight * gap.dot(stiffness * gap);
     sums.direct_gap += weight * direct_gap.dot(stiffness * direct_gap);

@@ -13,7 +13,7 @@ namespace signorini {
 template <int D>
 double Oscillation<D>::operator()(int t, LawField<D>& law, LoadValues<D>& load) const {
   const auto corners = problem_.mesh.corners(t);
-  const double rest = of_load(t, load);
+  const double rest = load.projection(t).rest;
   double sum = rest > 0 ? linear_remainder<D>(corners) * rest : 0;
   for (int e = 0; e < 3; ++e)
     if (const int edge = problem_.mesh.triangle_edges[t][e]; traction_.acts_on(edge))
@@ -29,29 +29,15 @@ double Oscillation<D>::operator()(int t, LawField<D>& law, LoadValues<D>& load) 
   return sum * std::sqrt(softest);
 }
 
-/// ‖f − Πf‖.
-template <int D>
-double Oscillation<D>::of_load(int t, LoadValues<D>& load) const {
-  const typename LoadValues<D>::AtPoints& f = load.at_points(t);
-  if ((f.colwise() - f.col(0)).isZero(0)) return 0;
-  const typename LoadValues<D>::AtCorners projection = load.projection(t);
-  double square = 0;
-  for (int q = 0; q < TriangleRule::size; ++q) {
-    const Eigen::Vector3d hats = triangle_basis(1, triangle_rule().points[q]);
-    square += triangle_rule().weights[q] * (f.col(q) - projection * hats).squaredNorm();
-  }
-  return std::sqrt(AffineMap(problem_.mesh.corners(t)).determinant * square);
-}
-
 /// ‖t − Πt‖ on an edge.
 template <int D>
 double Oscillation<D>::of_traction(int edge) const {
   double square = 0;
   for (int c = 0; c < D; ++c) {
     const auto t = [&](double s) { return traction_(edge, c, s); };
-    const LocalVector projection = project_onto_edge(1, edge_moments(1, t));
+    const LocalVector projection = project_onto_edge(2, edge_moments(2, t));
     for (int q = 0; q < EdgeRule::size; ++q) {
-      const double s = edge_rule().points[q], rest = t(s) - projection.dot(edge_basis(1, s));
+      const double s = edge_rule().points[q], rest = t(s) - projection.dot(edge_basis(2, s));
       square += edge_rule().weights[q] * rest * rest;
     }
   }

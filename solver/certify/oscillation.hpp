@@ -10,8 +10,8 @@ namespace signorini {
 ///
 ///     (f − Πf, w) + <t − Πt, w>  ≤  oscillation · ‖w‖_E
 ///
-/// on one triangle, for every displacement w, with the projections Π onto P1, so that w counts only up to
-/// linear functions: linear_remainder().
+/// on one triangle, for every displacement w, with the projections Π onto P2, so that w counts only up to
+/// linear functions at least: linear_remainder().
 template <int D>
 class Oscillation {
  public:
@@ -21,7 +21,6 @@ class Oscillation {
   double operator()(int t, LawField<D>& law, LoadValues<D>& load) const;
 
  private:
-  double of_load(int t, LoadValues<D>& load) const;
   double of_traction(int edge) const;
 
   const Discretization& problem_;

@@ -10,9 +10,9 @@ namespace signorini {
 namespace {
 
 constexpr int kLayers = 2;
-constexpr int kCuts = 2;
+constexpr int kCuts = 3;
 /// Edges on which less than this part of the largest force is moved are left to their surroundings.
-constexpr double kHardly = 0.2;
+constexpr double kHardly = 0.1;
 
 using PointSet = std::vector<bool>;
 
@@ -41,13 +41,23 @@ std::vector<int> triangles_at(const Mesh& mesh, const PointSet& points) {
   return triangles;
 }
 
+PointSet points_on_contact(const Problem& problem, const Mesh& mesh) {
+  PointSet points(mesh.points.size(), false);
+  for (const BoundaryPart& part : mesh.boundary) {
+    if (!condition_on<Contact>(problem, part.name)) continue;
+    for (const int edge : part.edges)
+      for (const int point : mesh.edges[edge]) points[point] = true;
+  }
+  return points;
+}
+
 /// The triangles `all` of the whole mesh, those of the core cut.
-Patch make_patch(const Mesh& whole, std::vector<int> all, const std::vector<int>& core) {
-  Submesh part(whole, all);
+Patch make_patch(const Discretization& problem, std::vector<int> all, const std::vector<int>& core) {
+  Submesh part(problem.mesh, all);
   Mesh mesh = with_longest_edges_first(std::move(part.mesh));
   for (int cut = 0; cut < kCuts; ++cut) {
     std::vector<int> marked, parents;
-    for (int t = 0; t < static_cast<int>(all.size()); ++t)
+    for (const int t : triangles_at(mesh, points_on_contact(problem.problem, mesh)))
       if (std::ranges::binary_search(core, all[t])) marked.push_back(t);
     mesh = bisect(mesh, marked, parents);
     for (int& parent : parents) parent = all[parent];
@@ -74,7 +84,7 @@ std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
   for (std::vector<int>& piece : bodies(Submesh(whole, layers).mesh)) {
     for (int& t : piece) t = layers[t];
     std::ranges::sort(piece);
-    patches.push_back(make_patch(whole, std::move(piece), core));
+    patches.push_back(make_patch(problem, std::move(piece), core));
   }
   return patches;
 }

@@ -16,7 +16,8 @@ struct Patch {
 };
 
 /// The patches around the contact edges on which p* is not p_h, but for those on which it hardly differs:
-/// where contact ends. Of two layers of triangles around them the inner one is cut, and cut again.
+/// where contact ends. Of two layers of triangles around them the inner one is cut three times, each
+/// time the triangles that lie at Γ_C.
 std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
                                                   const ContactPressure& pressure);
 

@@ -33,9 +33,14 @@ std::vector<int> layers_around(const Mesh& mesh, const std::vector<int>& points)
 
 }  // namespace
 
+PotentialNodes::PotentialNodes(const Discretization& problem)
+    : PotentialNodes(problem, std::vector<int>(problem.mesh.points.size(), 0)) {}
+
 PotentialNodes::PotentialNodes(const Discretization& problem, const ContactPressure& pressure)
+    : PotentialNodes(problem, layers_around(problem.mesh, points_with_potential(pressure))) {}
+
+PotentialNodes::PotentialNodes(const Discretization& problem, const std::vector<int>& layers)
     : mesh_(problem.mesh), numbers_(mesh_.points.size() + mesh_.edges.size(), -1) {
-  const std::vector<int> layers = layers_around(mesh_, points_with_potential(pressure));
   for (int t = 0; t < problem.triangles(); ++t) take(t, layers);
   leave_out_traction(problem.problem);
   for (int& number : numbers_)

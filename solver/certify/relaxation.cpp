@@ -118,7 +118,7 @@ class Curvature {
 
 /// Πf at the corners. Its mean will do for the nonconforming scheme.
 Eigen::Vector3d load_at_corners(const Discretization& problem, int t, double twice_area) {
-  if (problem.spaces().order == 1) return LoadValues<1>(problem).projection(t).transpose();
+  if (problem.spaces().order == 1) return LoadValues<1>(problem).linear(t).transpose();
   return Eigen::Vector3d::Constant(2 / twice_area * problem.load(0, t));
 }
 

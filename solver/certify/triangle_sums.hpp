@@ -2,9 +2,9 @@
 
 #include "certify/admissible_pair.hpp"
 #include "certify/edge_tractions.hpp"
-#include "certify/linear_balance.hpp"
 #include "certify/macro_values.hpp"
 #include "certify/patch_pairs.hpp"
+#include "certify/quadratic_balance.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
 
@@ -26,7 +26,7 @@ struct TriangleSums {
   TriangleSums& operator+=(const TriangleSums& other);
 };
 
-/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the linear balance; v is v_h. On a
+/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the quadratic balance; v is v_h. On a
 /// patch σ* has a change of its own besides, and there is a second pair.
 class MembraneSums {
  public:
@@ -41,7 +41,8 @@ class MembraneSums {
     Rule(const Spaces& spaces, int cuts);
 
     std::vector<WeightedPoint> points;
-    StressValues<1> stress, balance;
+    StressValues<1> stress;
+    std::vector<QuadraticBalance::Values> balance;
     std::vector<Eigen::Matrix<double, 6, 1>> basis;
     std::vector<Eigen::Matrix<double, 2, 6>> gradients;
   };
@@ -51,7 +52,7 @@ class MembraneSums {
   const AdmissiblePair& pair_;
   const AdmissiblePair* second_ = nullptr;
   const Eigen::MatrixXd* change_ = nullptr;
-  const LinearBalance balance_;
+  const QuadraticBalance balance_;
   Rule plain_, composite_;
 };
 

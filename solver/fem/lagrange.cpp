@@ -8,8 +8,10 @@ LocalVector edge_basis(int order, double s) {
   LocalVector values(order + 1);
   if (order == 0)
     values << 1;
-  else
+  else if (order == 1)
     values << 1 - s, s;
+  else
+    values << (1 - s) * (1 - 2 * s), s * (2 * s - 1), 4 * s * (1 - s);
   return values;
 }
 
@@ -32,11 +34,21 @@ LocalVector edge_moments(int order, const std::function<double(double s)>& funct
 }
 
 LocalVector project_onto_edge(int order, const LocalVector& moments) {
-  if (order == 0) return moments;
-  // The mass matrix of 1 − s, s is [2 1; 1 2] / 6.
-  LocalVector coefficients(2);
-  coefficients << 4 * moments[0] - 2 * moments[1], 4 * moments[1] - 2 * moments[0];
+  // Times the inverse of the mass matrix: of [2 1; 1 2] / 6 for k = 1, [4 -1 2; -1 4 2; 2 2 16] / 30 for k
+  // = 2.
+  LocalVector coefficients = moments;
+  if (order == 1) coefficients << 4 * moments[0] - 2 * moments[1], 4 * moments[1] - 2 * moments[0];
+  if (order == 2)
+    coefficients << 9 * moments[0] + 3 * moments[1] - 1.5 * moments[2],
+        3 * moments[0] + 9 * moments[1] - 1.5 * moments[2],
+        -1.5 * moments[0] - 1.5 * moments[1] + 2.25 * moments[2];
   return coefficients;
+}
+
+Eigen::Vector3d projection_at_nodes(int order, const std::function<double(double s)>& function) {
+  const LocalVector own = project_onto_edge(order, edge_moments(order, function));
+  if (order == 2) return own;
+  return {own[0], own[order], (own[0] + own[order]) / 2};
 }
 
 }  // namespace signorini

@@ -1,6 +1,7 @@
 #include "fem/quadrature.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace signorini {
 namespace {
@@ -19,6 +20,26 @@ TriangleRule radon() {
       rule.weights[next++] = weight;
     }
   }
+  return rule;
+}
+
+FineTriangleRule dunavant() {
+  FineTriangleRule rule{};
+  int next = 0;
+  const auto add = [&](double x, double y, double weight) {
+    rule.points[next] = {x, y};
+    rule.weights[next++] = weight / 2;
+  };
+  // Two orbits of three points (a, a), (1 − 2a, a), (a, 1 − 2a), and one of six.
+  for (const auto& [a, weight] : {std::pair{0.24928674517091042129, 0.11678627572637936603},
+                                  {0.06308901449150222834, 0.050844906370206816921}}) {
+    add(a, a, weight);
+    add(1 - 2 * a, a, weight);
+    add(a, 1 - 2 * a, weight);
+  }
+  constexpr double a = 0.053145049844816947353, b = 0.31035245103378440542, c = 1 - a - b;
+  for (const auto& [x, y] : {std::pair{a, b}, {b, a}, {b, c}, {c, b}, {c, a}, {a, c}})
+    add(x, y, 0.082851075618373575194);
   return rule;
 }
 
@@ -41,6 +62,11 @@ EdgeRule gauss() {
 
 const TriangleRule& triangle_rule() {
   static const TriangleRule rule = radon();
+  return rule;
+}
+
+const FineTriangleRule& fine_triangle_rule() {
+  static const FineTriangleRule rule = dunavant();
   return rule;
 }
 

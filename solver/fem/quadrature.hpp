@@ -8,14 +8,21 @@ namespace signorini {
 
 /// Points of the reference triangle (0,0), (1,0), (0,1), all inside it, so that a load that jumps along
 /// mesh lines is never evaluated on its jump. The weights sum to the area 1/2.
-struct TriangleRule {
-  static constexpr int size = 7;
+template <int Points>
+struct RuleOnTriangle {
+  static constexpr int size = Points;
   std::array<Point, size> points;
   std::array<double, size> weights;
 };
 
+using TriangleRule = RuleOnTriangle<7>;
+using FineTriangleRule = RuleOnTriangle<12>;
+
 /// Radon's rule with seven points: exact for polynomials of degree 5 (Stroud, T2: 5-1).
 const TriangleRule& triangle_rule();
+
+/// Dunavant's rule with twelve points (1985): exact for polynomials of degree 6.
+const FineTriangleRule& fine_triangle_rule();
 
 /// Points and weights on [0, 1]; the weights sum to 1.
 struct EdgeRule {

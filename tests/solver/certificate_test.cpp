@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
 #include "certificate_fields.hpp"
-#include "certify/linear_balance.hpp"
+#include "certify/quadratic_balance.hpp"
+#include "fem/lagrange.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
 #include "norms.hpp"
@@ -171,36 +175,100 @@ TEST(Certificate, BoundsTheErrorOfFiftyRandomProblems) {
   EXPECT_LE(effectivities.back(), 1.85);
 }
 
-TEST(LinearBalance, HasWhatTheStressLacksOfTheLinearPartsOfLoadAndTraction) {
-  const auto f = [](const Point& x) { return 1 + 2 * x.x() - 3 * x.y(); };
-  const auto t = [](const Point& x) { return 0.5 - 4 * x.x() + x.y(); };
-  Problem problem;
-  problem.mesh = {Divisions{3, 2}, Pattern::crossed};
-  problem.body = problems::function(f);
-  problem.boundary = {{"left", Fixed{}},
-                      {"right", Traction{problems::function(t)}},
-                      {"top", Traction{problems::function(t)}}};
-  const Mesh mesh = rectangle_mesh(std::get<Rectangle>(problem.domain), {3, 2}, Pattern::crossed);
-  const Discretization discretization(problem, mesh);
-  const LinearBalance balance(discretization);
-  const TractionField traction(problem, mesh);
-  const RaviartThomas element(1);
-  LoadValues<1> load(discretization);
-  for (int triangle = 0; triangle < discretization.triangles(); ++triangle) {
-    const LinearBalance::Coefficients tau = balance(triangle, load).value();
-    const AffineMap map(mesh.corners(triangle));
-    for (const Point& x : {Point(0, 0), Point(1, 0), Point(0, 1), Point(0.2, 0.3)})
-      EXPECT_NEAR(element.reference_divergences(x).dot(tau) / map.determinant,
-                  f(mesh.centroid(triangle)) - f(map(x)), 1e-12);
-    for (int e = 0; e < 3; ++e) {
-      const int edge = mesh.triangle_edges[triangle][e];
-      const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
-      const Point &a = corners[(e + 1) % 3], &b = corners[(e + 2) % 3];
-      const Vector along = map(b) - map(a), outward = Vector(along.y(), -along.x()).normalized();
-      for (const double s : {0., 0.3, 1.}) {
-        const Point x = a + s * (b - a);
-        const double lacking = traction.acts_on(edge) ? t(map(x)) - t((map(a) + map(b)) / 2) : 0;
-        EXPECT_NEAR(outward.dot(element.values(map, x) * tau), lacking, 1e-12);
+/// By differences.
+template <typename Flux>
+double divergence(const AffineMap& map, const Flux& tau, const Point& reference) {
+  constexpr double step = 1e-4;
+  Eigen::Matrix2d slope;
+  for (int k = 0; k < 2; ++k) {
+    const Vector along = step * Vector::Unit(k);
+    slope.col(k) = (tau(reference + along) - tau(reference - along)) / (2 * step);
+  }
+  return (slope * map.jacobian.inverse()).trace();
+}
+
+/// The coefficients in triangle_basis.
+template <typename Function>
+LocalVector project_onto_p(int order, const AffineMap& map, const Function& f) {
+  LocalMatrix mass = LocalMatrix::Zero(2 * order + 1, 2 * order + 1);
+  LocalVector moments = LocalVector::Zero(2 * order + 1);
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const LocalVector basis = triangle_basis(order, triangle_rule().points[q]);
+    mass += triangle_rule().weights[q] * basis * basis.transpose();
+    moments += triangle_rule().weights[q] * f(map(triangle_rule().points[q])) * basis;
+  }
+  return mass.ldlt().solve(moments);
+}
+
+TEST(LoadValues, ProjectsOntoQuadraticFunctions) {
+  const auto quadratic = [](const Point& x) {
+    return 1 + 2 * x.x() - 3 * x.y() + 4 * x.x() * x.y() - x.y() * x.y();
+  };
+  for (const Scheme scheme : schemes)
+    for (const double cubic : {0., 5.}) {
+      Problem problem = problems::paper(scheme, 2);
+      problem.body =
+          problems::function([&](const Point& x) { return quadratic(x) + cubic * std::pow(x.x(), 3); });
+      const Mesh mesh = rectangle_mesh(std::get<Rectangle>(problem.domain), {2, 2}, Pattern::right);
+      const Discretization discretization(problem, mesh);
+      LoadValues<1> load(discretization);
+      for (int t = 0; t < discretization.triangles(); ++t) {
+        const AffineMap map(mesh.corners(t));
+        const auto& [balanced, rest] = load.projection(t);
+        for (const Point& x : {Point(0, 0), Point(1, 0), Point(0.2, 0.3)}) {
+          if (cubic == 0) {
+            EXPECT_NEAR(balanced.dot(quadratic_basis(x)), quadratic(map(x)), 1e-12);
+          }
+        }
+        // x − x₀ is ±λ_i / 2 for one of the barycentric coordinates, and ‖λ_i³ − Πλ_i³‖ = √2 / 140 on the
+        // reference triangle.
+        EXPECT_NEAR(rest, cubic / 8 * std::sqrt(2 * map.determinant) / 140, 1e-12);
+      }
+    }
+}
+
+TEST(QuadraticBalance, HasWhatTheStressLacksOfLoadAndTraction) {
+  const auto f = [](const Point& x) { return 1 + 2 * x.x() - 3 * x.y() + 4 * x.x() * x.y() - x.y() * x.y(); };
+  const auto t = [](const Point& x) {
+    return 0.5 - 4 * x.x() + x.y() + 3 * x.x() * x.x() - 2 * x.y() * x.y();
+  };
+  for (const Scheme scheme : schemes) {
+    Problem problem;
+    problem.scheme = scheme;
+    problem.mesh = {Divisions{3, 2}, Pattern::crossed};
+    problem.body = problems::function(f);
+    problem.boundary = {{"left", Fixed{}},
+                        {"right", Traction{problems::function(t)}},
+                        {"top", Traction{problems::function(t)}}};
+    const Mesh mesh = rectangle_mesh(std::get<Rectangle>(problem.domain), {3, 2}, Pattern::crossed);
+    const Discretization discretization(problem, mesh);
+    const int order = discretization.spaces().order;
+    const QuadraticBalance balance(discretization);
+    const TractionField traction(problem, mesh);
+    LoadValues<1> load(discretization);
+    for (int triangle = 0; triangle < discretization.triangles(); ++triangle) {
+      const QuadraticBalance::Data data = balance(triangle, load).value();
+      const AffineMap map(mesh.corners(triangle));
+      const auto tau = [&](const Point& x) -> Vector {
+        return map.jacobian * QuadraticBalance::reference_values(x) * data / map.determinant;
+      };
+      const auto seen = [&](const Point& x) {
+        return project_onto_p(order, map, f).dot(triangle_basis(order, x));
+      };
+      for (const Point& x : {Point(0.1, 0.1), Point(0.7, 0.1), Point(0.2, 0.3)})
+        EXPECT_NEAR(divergence(map, tau, x), seen(x) - f(map(x)), 1e-8);
+      for (int e = 0; e < 3; ++e) {
+        const int edge = mesh.triangle_edges[triangle][e];
+        const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+        const Point &a = corners[(e + 1) % 3], &b = corners[(e + 2) % 3];
+        const Vector along = map(b) - map(a), outward = Vector(along.y(), -along.x()).normalized();
+        const auto on_edge = [&](double s) { return t(map(a + s * (b - a))); };
+        const LocalVector projection = project_onto_edge(order, edge_moments(order, on_edge));
+        for (const double s : {0., 0.3, 1.}) {
+          const double lacking =
+              traction.acts_on(edge) ? on_edge(s) - projection.dot(edge_basis(order, s)) : 0;
+          EXPECT_NEAR(outward.dot(tau(a + s * (b - a))), lacking, 1e-12);
+        }
       }
     }
   }

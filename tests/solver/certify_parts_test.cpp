@@ -2,10 +2,14 @@
 
 #include <random>
 
+#include <Eigen/LU>
+
 #include "certify/admissible_displacement.hpp"
 #include "certify/edge_tractions.hpp"
 #include "certify/lift.hpp"
+#include "certify/local_fields.hpp"
 #include "certify/macro_element.hpp"
+#include "fem/lagrange.hpp"
 #include "problems/elasticity.hpp"
 #include "solve.hpp"
 
@@ -43,8 +47,8 @@ Problem punch(Scheme scheme) {
       {"top", Fixed{VectorField(0.02, -0.05)}},
       {"bottom",
        Contact{Field([](const Point& x, const Vector&) { return 0.2 * std::pow(x.x() - 0.3, 2); }, "/t")}},
-      {"left",
-       Traction{VectorField(field([](const Point& x) { return 0.03 + 0.1 * x.y(); }), Field(-0.02))}}};
+      {"left", Traction{VectorField(field([](const Point& x) { return 0.03 + 0.1 * x.y() * x.y(); }),
+                                    Field(-0.02))}}};
   problem.body = VectorField(field([](const Point& x) { return 0.1 + x.y(); }),
                              field([](const Point& x) { return -0.2 - x.x() * x.y(); }));
   return problem;
@@ -76,14 +80,20 @@ TEST_P(Parts, EveryTriangleIsInBalanceOfForcesAndMoments) {
     }
     for (int e = 0; e < 3; ++e) {
       const Vector a = corners[(e + 1) % 3] - centroid, b = corners[(e + 2) % 3] - centroid;
-      const Eigen::Matrix2d ends = tractions.on(t, e);
+      const Eigen::Matrix<double, 2, 3> own = tractions.on(t, e);
       const double length = (b - a).norm();
-      force += length * (ends.col(0) + ends.col(1)) / 2;
-      // ∫ x × t of two linear functions.
-      moment += length / 6 *
-                (2 * cross(a, ends.col(0)) + cross(a, ends.col(1)) + cross(b, ends.col(0)) +
-                 2 * cross(b, ends.col(1)));
-      size += length * ends.norm();
+      // Simpson's rule is exact for cubic functions.
+      force += length / 6 * (own.col(0) + 4 * own.col(2) + own.col(1));
+      moment +=
+          length / 6 * (cross(a, own.col(0)) + 4 * cross((a + b) / 2, own.col(2)) + cross(b, own.col(1)));
+      size += length * own.norm();
+      const int edge = mesh.triangle_edges[t][e];
+      const TractionField given(problem, mesh);
+      if (!given.acts_on(edge)) continue;
+      const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
+      for (const auto& [column, s] : {std::pair(0, 0.), {1, 1.}, {2, 0.5}})
+        for (int c = 0; c < 2; ++c)
+          EXPECT_NEAR(own(c, column), given(edge, c, forward ? s : 1 - s), 1e-10 * own.norm());
     }
     EXPECT_LE(force.norm(), 1e-10 * size);
     EXPECT_LE(std::abs(moment), 1e-10 * size * (corners[1] - corners[0]).norm());
@@ -161,49 +171,72 @@ Vector traction(const Eigen::Vector3d& stress, const Vector& n) {
   return {stress[0] * n.x() + stress[2] * n.y(), stress[2] * n.x() + stress[1] * n.y()};
 }
 
-TEST(MacroElement, HasTheTractionsAndTheDivergenceThatItIsGiven) {
+using MacroData = Eigen::Matrix<double, MacroElement::kData, 1>;
+
+/// The work of tractions and divergence on w = (1, 0) and w = (0, 1) at a node: ∮ t·w − ∫ div·w.
+Vector work_of(const MacroData& data, int node) {
+  const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+  Vector work = Vector::Zero();
+  for (int e = 0; e < 3 && node < 6; ++e)
+    for (int q = 0; q < EdgeRule::size; ++q) {
+      const double s = edge_rule().points[q];
+      const Point x = (1 - s) * corners[(e + 1) % 3] + s * corners[(e + 2) % 3];
+      work += edge_rule().weights[q] * quadratic_basis(x)[node] *
+              (data.segment<6>(6 * e).reshaped(2, 3) * edge_basis(2, s));
+    }
+  for (const MacroElement::Place& place : MacroElement::places(1))
+    work -= place.weight * place.displacement_basis[node] *
+            (data.tail<12>().reshaped(2, 6) * quadratic_basis(place.point));
+  return work;
+}
+
+/// The forces and the moment of the data.
+Eigen::Vector3d resultants(const MacroData& data) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int node = 0; node < MacroElement::kNodes; ++node) {
+    const Vector work = work_of(data, node);
+    const Point x = MacroElement::node(node);
+    sum += Eigen::Vector3d(work.x(), work.y(), x.x() * work.y() - x.y() * work.x());
+  }
+  return sum;
+}
+
+/// Any tractions and divergence that balance.
+MacroData balanced_data() {
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> unit(-1, 1);
-  Eigen::Matrix<double, 3, 3> linear;  // (xx, yy, xy) = linear · (1, x, y)
-  for (double& entry : linear.reshaped()) entry = unit(generator);
-  const auto exact = [&](const Point& x) -> Eigen::Vector3d {
-    return linear * Eigen::Vector3d(1, x.x(), x.y());
-  };
-  const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
-  Eigen::Matrix<double, MacroElement::kData, 1> data;
-  for (int e = 0; e < 3; ++e)
-    for (int end = 0; end < 2; ++end) {
-      const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
-      const Vector normal(b.y() - a.y(), a.x() - b.x());
-      const Eigen::Vector3d s = exact(end == 0 ? a : b);
-      data.segment<2>(4 * e + 2 * end) = traction(s, normal);
+  MacroData data;
+  for (double& entry : data) entry = unit(generator);
+  Eigen::Matrix<double, MacroElement::kData, 3> rigid = decltype(rigid)::Zero();
+  Eigen::Matrix3d of_rigid;
+  for (int k = 0; k < 3; ++k) {
+    for (int z = 0; z < 6; ++z) {
+      const Point x = MacroElement::node(z);
+      rigid.col(k).segment<2>(MacroElement::kTractions + 2 * z) =
+          k < 2 ? Vector(k == 0, k == 1) : Vector(-x.y(), x.x());
     }
-  const Vector divergence(linear(0, 1) + linear(2, 2), linear(2, 1) + linear(1, 2));
-  for (int z = 0; z < 3; ++z) data.segment<2>(12 + 2 * z) = divergence;
-
-  const MacroElement& element = macro_element();
-  const Eigen::Matrix<double, MacroElement::kStresses, 1> stress = element.from_data * data;
-  // It does the same work as the linear stress on every displacement of the macro-element.
-  for (int node = 0; node < MacroElement::kNodes; ++node) {
-    Vector work = Vector::Zero(), exact_work = Vector::Zero();
-    for (const MacroElement::Place& place : MacroElement::places(1)) {
-      const Vector g = place.displacement_gradients.col(node);
-      work += place.weight * traction(MacroElement::stress(place, stress), g);
-      exact_work += place.weight * traction(exact(place.point), g);
-    }
-    EXPECT_LE((work - exact_work).norm(), 1e-12);
+    of_rigid.col(k) = resultants(rigid.col(k));
   }
-  // Free stresses do no work on any displacement of the macro-element.
-  for (int k = 0; k < MacroElement::kFree; ++k)
-    for (int node = 0; node < MacroElement::kNodes; ++node) {
-      Vector work = Vector::Zero();
-      for (const MacroElement::Place& place : MacroElement::places(1)) {
-        const Eigen::Vector3d s = MacroElement::stress(place, element.free.col(k));
-        const Vector g = place.displacement_gradients.col(node);
-        work += place.weight * traction(s, g);
-      }
-      EXPECT_LE(work.norm(), 1e-12);
-    }
+  return data - rigid * of_rigid.inverse() * resultants(data);
+}
+
+/// By parts, a stress does the work of its tractions and its divergence on every displacement.
+TEST(MacroElement, HasTheTractionsAndTheDivergenceThatItIsGiven) {
+  const MacroData data = balanced_data();
+  const MacroElement& element = macro_element();
+  const auto work_of_stress = [](const auto& coefficients, int node) {
+    Vector work = Vector::Zero();
+    for (const MacroElement::Place& place : MacroElement::places(1))
+      work += place.weight *
+              traction(MacroElement::stress(place, coefficients), place.displacement_gradients.col(node));
+    return work;
+  };
+  const Eigen::Matrix<double, MacroElement::kStresses, 1> stress = element.from_data * data;
+  for (int node = 0; node < MacroElement::kNodes; ++node) {
+    EXPECT_LE((work_of_stress(stress, node) - work_of(data, node)).norm(), 1e-12);
+    for (int k = 0; k < MacroElement::kFree; ++k)
+      EXPECT_LE(work_of_stress(element.free.col(k), node).norm(), 1e-12);
+  }
 }
 
 TEST(Lift, VanishesOnTheOtherEdgesAndHasItsOwnGradient) {

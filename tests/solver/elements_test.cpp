@@ -92,8 +92,8 @@ TEST_P(Elements, ReproducesConstantsAndLinears) {
     if (element_.order() == 0) slope = 0.7 * Eigen::Matrix2d::Identity();  // RT0 holds the field x itself
     const auto field = [&](const Point& x) -> Vector { return Vector(0.3, -1.1) + slope * map(x); };
     const LocalVector coefficients = functionals(element_, corners, field);
-    const LocalVector interpolated = element_.interpolate(
-        map, [&](const Point& x) -> Vector { return Vector(0.3, -1.1) + slope * x; });
+    const LocalVector interpolated =
+        element_.interpolate(map, [&](const Point& x) -> Vector { return Vector(0.3, -1.1) + slope * x; });
     EXPECT_LT((interpolated - coefficients).norm(), 1e-12);
     for (const Point& x : triangle_rule().points) {
       EXPECT_LT((element_.values(map, x) * coefficients - field(x)).norm(), 1e-12);
@@ -119,19 +119,36 @@ double power(double x, int n) {
   return std::pow(x, n);
 }
 
-TEST(Quadrature, IsExactToItsDegree) {
-  for (int i = 0; i <= 5; ++i)
-    for (int j = 0; i + j <= 5; ++j) {
+template <typename Rule>
+void expect_exact(const Rule& rule, int degree) {
+  for (int i = 0; i <= degree; ++i)
+    for (int j = 0; i + j <= degree; ++j) {
       double sum = 0;
-      for (int q = 0; q < TriangleRule::size; ++q) {
-        const Point& x = triangle_rule().points[q];
+      for (int q = 0; q < Rule::size; ++q) {
+        const Point& x = rule.points[q];
         EXPECT_GT(x.minCoeff(), 0);
         EXPECT_LT(x.sum(), 1);
-        sum += triangle_rule().weights[q] * power(x.x(), i) * power(x.y(), j);
+        sum += rule.weights[q] * power(x.x(), i) * power(x.y(), j);
       }
       // ∫ x^i y^j = i! j! / (i + j + 2)!
       EXPECT_NEAR(sum, std::tgamma(i + 1) * std::tgamma(j + 1) / std::tgamma(i + j + 3), 1e-15);
     }
+}
+
+TEST(EdgeBasis, ProjectsItsOwnFunctionsOntoThemselves) {
+  for (const int order : {0, 1, 2})
+    for (int k = 0; k <= order; ++k) {
+      const auto own = [&](double s) { return edge_basis(order, s)[k]; };
+      const LocalVector projection = project_onto_edge(order, edge_moments(order, own));
+      for (int j = 0; j <= order; ++j) EXPECT_NEAR(projection[j], j == k ? 1 : 0, 1e-14);
+      const Eigen::Vector3d at_nodes = projection_at_nodes(order, own);
+      for (int i = 0; i < 3; ++i) EXPECT_NEAR(at_nodes[i], own(std::array{0., 1., 0.5}[i]), 1e-14);
+    }
+}
+
+TEST(Quadrature, IsExactToItsDegree) {
+  expect_exact(triangle_rule(), 5);
+  expect_exact(fine_triangle_rule(), 6);
   for (int i = 0; i <= 9; ++i) {
     double sum = 0;
     for (int q = 0; q < EdgeRule::size; ++q) sum += edge_rule().weights[q] * power(edge_rule().points[q], i);

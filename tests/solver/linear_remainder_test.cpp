@@ -85,14 +85,16 @@ LocalStress<2>::LocalStress(const std::array<Point, 3>& corners) {
       const int first = 4 * e + 2 * end;
       moments.middleCols<2>(first) << length / 2, 0, 0, length / 2, length / 6 * turning.x(),
           length / 6 * turning.y();
-      data.block<2, 2>(first, first) = length * inverse;
+      data.block<2, 2>(6 * e + 2 * end, first) = length * inverse;
+      data.block<2, 2>(6 * e + 4, first) = length / 2 * inverse;
     }
   }
   const Eigen::Matrix<double, 3, 6> tested = rigid.transpose() * mass;
   load.leftCols<kTractions>() = -rigid * (tested * rigid).inverse() * moments;
   load.rightCols<kMore>() = Eigen::FullPivLU<Eigen::MatrixXd>(tested).kernel();
   for (int j = 0; j < kUnknowns; ++j)
-    data.col(j).tail<6>() = (-map.determinant * inverse * load.col(j).reshaped(2, 3)).reshaped();
+    data.col(j).tail<12>() =
+        (-map.determinant * inverse * at_nodes<2>(load.col(j).reshaped(2, 3))).reshaped();
   static const MacroRule rule(spaces_of(Scheme::nonconforming, 2), 1);
   const MacroNorms norms(rule, map, SymmetricLaw(Eigen::Matrix4d::Identity()));
   const Eigen::MatrixXd root = norms.correction.leftCols<MacroElement::kData>() * data;

@@ -1,0 +1,87 @@
+#include "certify/quadratic_balance.hpp"
+
+#include <Eigen/QR>
+
+#include "fem/lagrange.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr int kData = QuadraticBalance::kData, kFluxes = QuadraticBalance::kFluxes;
+using Values = QuadraticBalance::Values;
+
+/// RT2 = P2² + x P̃2: two times the basis of P2, and x times x², xy, y².
+Values functions(const Point& x) {
+  const Eigen::Matrix<double, 6, 1> basis = quadratic_basis(x);
+  Values values = Values::Zero();
+  for (int j = 0; j < 6; ++j) values.block<2, 2>(0, 2 * j) = basis[j] * Eigen::Matrix2d::Identity();
+  values.rightCols<3>() << x * x.x() * x.x(), x * x.x() * x.y(), x * x.y() * x.y();
+  return values;
+}
+
+Eigen::Matrix<double, 1, kData> divergences(const Point& x) {
+  Eigen::Matrix<double, 1, kData> values;
+  values << quadratic_gradients(x).reshaped().transpose(), 4 * x.x() * x.x(), 4 * x.x() * x.y(),
+      4 * x.y() * x.y();
+  return values;
+}
+
+/// The curl of λ₀ λ₁ λ₂.
+Vector curl_of_bubble(const Point& x) {
+  const double l1 = x.x(), l2 = x.y(), l0 = 1 - l1 - l2;
+  return {l1 * (l0 - l2), -l2 * (l0 - l1)};
+}
+
+/// Column j: the coefficients of the function with datum j.
+Eigen::Matrix<double, kData, kData> functions_of_data() {
+  const std::array<Point, 6> nodes{Point(0, 0),     Point(1, 0),   Point(0, 1),
+                                   Point(0.5, 0.5), Point(0, 0.5), Point(0.5, 0)};
+  Eigen::Matrix<double, kData + 1, kData> data = decltype(data)::Zero();
+  for (int e = 0; e < 3; ++e) {
+    const int a = (e + 1) % 3, b = (e + 2) % 3;
+    const Vector way = nodes[b] - nodes[a], normal(way.y(), -way.x());
+    const std::array<int, 3> on_edge{a, b, 3 + e};
+    for (int i = 0; i < 3; ++i) data.row(3 * e + i) = normal.transpose() * functions(nodes[on_edge[i]]);
+  }
+  for (int j = 0; j < 6; ++j) data.row(kFluxes + j) = divergences(nodes[j]);
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point& x = triangle_rule().points[q];
+    data.bottomRows<1>() += triangle_rule().weights[q] * curl_of_bubble(x).transpose() * functions(x);
+  }
+  return data.colPivHouseholderQr().solve(Eigen::Matrix<double, kData + 1, kData>::Identity());
+}
+
+}  // namespace
+
+std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, LoadValues<1>& load) const {
+  const int order = problem_.spaces().order;
+  const Mesh& mesh = problem_.mesh;
+  const Quadratic<1>& balanced = load.projection(t).balanced;
+  const double twice_area = AffineMap(mesh.corners(t)).determinant;
+  Quadratic<1> lacking = balanced;
+  if (order == 0)
+    lacking.array() -= balanced.rightCols<3>().mean();
+  else
+    lacking -= at_nodes<1>(load.linear(t));
+  constexpr double rounding = 1e-14;
+  if (lacking.norm() <= rounding * balanced.norm()) lacking.setZero();
+  Data data = Data::Zero();
+  data.tail<6>() = -twice_area * lacking.transpose();
+  for (int e = 0; e < 3; ++e) {
+    const int edge = mesh.triangle_edges[t][e];
+    if (!traction_.acts_on(edge)) continue;
+    const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
+    const auto own = [&](double s) { return traction_(edge, 0, forward ? s : 1 - s); };
+    data.segment<3>(3 * e) =
+        mesh.length(edge) * (projection_at_nodes(2, own) - projection_at_nodes(order, own));
+  }
+  if (data.isZero(0)) return std::nullopt;
+  return data;
+}
+
+QuadraticBalance::Values QuadraticBalance::reference_values(const Point& reference) {
+  static const Eigen::Matrix<double, kData, kData> of_data = functions_of_data();
+  return functions(reference) * of_data;
+}
+
+}  // namespace signorini

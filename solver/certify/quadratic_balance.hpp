@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "certify/load_values.hpp"
+#include "fem/traction_field.hpp"
+
+namespace signorini {
+
+/// What σ_h lacks, on a membrane, to balance the quadratic parts of load and traction too, and not those
+/// alone that the scheme sees (Π_h): on each triangle a function of RT2 with
+///
+///     div τ = Π_h f − Πf,   τn = Πt − Π_h t on Γ_F,   τn = 0 on the other edges.
+class QuadraticBalance {
+ public:
+  explicit QuadraticBalance(const Discretization& problem)
+      : problem_(problem), traction_(problem.problem, problem.mesh) {}
+
+  /// τn |e| at both ends and in the middle of edge 0, 1, 2, and the divergence, times det J, at the nodes of
+  /// P2.
+  static constexpr int kFluxes = 9, kData = kFluxes + 6;
+  using Data = Eigen::Matrix<double, kData, 1>;
+  using Values = Eigen::Matrix<double, 2, kData>;
+
+  /// None where the data are constant or balanced by σ_h.
+  std::optional<Data> operator()(int t, LoadValues<1>& load) const;
+
+  /// Times the data, which must balance: τ at a point of the reference triangle, before the Piola map. Of the
+  /// functions with these data, which differ by the curl of the cubic bubble, the least.
+  static Values reference_values(const Point& reference);
+
+ private:
+  const Discretization& problem_;
+  TractionField traction_;
+};
+
+}  // namespace signorini
