@@ -47,8 +47,9 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
 
 void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progress& progress) {
   const Mesh& mesh = problem_.mesh;
-  QuadraticValues values{points_.row(0), middles_.row(0), std::vector<bool>(mesh.points.size()),
-                         std::vector<bool>(mesh.edges.size())};
+  QuadraticValues values(mesh);
+  values.points = points_.row(0);
+  values.middles = middles_.row(0);
   for (const auto& [point, value] : fixed_points_) values.held_points[point] = true;
   for (const BoundaryPart& part : mesh.boundary)
     if (condition_on<Fixed>(problem_.problem, part.name))
@@ -59,7 +60,7 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
     for (int k = 0; k < 2; ++k)
       if (touches(contact, k)) values.held_points[mesh.edges[contact.edge][k]] = true;
   }
-  signorini::relax(problem_, values, work, steps, progress);
+  signorini::relax(problem_, stiffness_of, values, work, steps, progress);
   points_.row(0) = values.points;
   middles_.row(0) = values.middles;
   for (const ContactEdge& contact : problem_.clearance.edges)

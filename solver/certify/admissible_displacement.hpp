@@ -26,8 +26,8 @@ class AdmissibleDisplacement {
   AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
                          const Eigen::VectorXd& coupling);
 
-  /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp. What
-  /// is lifted stays as it is, and so do the values that touch.
+  /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp.
+  /// What is lifted stays as it is, and so do the values that touch.
   void relax(const Eigen::VectorXd& work, int steps, Progress& progress);
 
   template <int D>
@@ -83,9 +83,9 @@ class AdmissibleDisplacement {
   const Discretization& problem_;
   int components_;
   Eigen::VectorXd clearance_;  ///< a value a row of the clearance space
-  Eigen::MatrixXd points_;   ///< a column a point
-  Eigen::MatrixXd middles_;  ///< a column an edge
-  double scale_;             ///< max |v|
+  Eigen::MatrixXd points_;     ///< a column a point
+  Eigen::MatrixXd middles_;    ///< a column an edge
+  double scale_;               ///< max |v|
   std::map<int, Eigen::VectorXd> fixed_points_;
   std::map<int, Lift> lifts_;
   std::vector<std::string> unmet_;

@@ -1,14 +1,22 @@
 #pragma once
 
 #include "certify/admissible_displacement.hpp"
+#include "certify/balance_potential.hpp"
 #include "certify/contact_pressure.hpp"
 
 namespace signorini {
 
-/// v, and σ* by the pressure that it has on Γ_C.
+/// v, and σ* by the pressure that it has on Γ_C and, for a membrane, the potential that spreads its balance.
 struct AdmissiblePair {
   AdmissibleDisplacement v;
   ContactPressure pressure;
+  std::optional<QuadraticValues> of_balance = std::nullopt;
+
+  /// Of a membrane: the potential, on a triangle, whose curl σ* has besides σ_h and its balance.
+  Quadratic<1> potential_on(const Mesh& mesh, int t) const {
+    const Quadratic<1> of_pressure = pressure.potential_on(mesh, t);
+    return of_balance ? Quadratic<1>(of_pressure + of_balance->on(mesh, t)) : of_pressure;
+  }
 };
 
 }  // namespace signorini

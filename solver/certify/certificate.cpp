@@ -59,6 +59,7 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   if (problem.spaces().components == 1) {
     pair.v.relax(work_of_loads(problem), kStepsFromAverage, progress);
     minimize_potential(problem, pair.v, clearance, pair.pressure, progress);
+    pair.of_balance = potential_of_balance(problem, progress);
     const Owners owners = add_patches(problem, solution, pair, totals, progress);
     totals.add<1>(problem, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
   } else {

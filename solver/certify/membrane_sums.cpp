@@ -55,11 +55,11 @@ MembraneSums::MembraneSums(const PatchPairs& pairs)
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& load) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
-  const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.pressure.potential_on(problem_.mesh, t);
+  const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);
   Quadratic<1> w = Quadratic<1>::Zero(), potential_of_tau = Quadratic<1>::Zero();
   if (second_) {
     w = v - second_->v.on<1>(t);
-    potential_of_tau = potential - second_->pressure.potential_on(problem_.mesh, t);
+    potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
   }
   const std::optional<QuadraticBalance::Data> balance = balance_(t, load);
   const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);

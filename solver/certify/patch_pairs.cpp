@@ -35,7 +35,7 @@ Fixed displacement_on_cut(const Discretization& whole, const AdmissibleDisplacem
 
 /// σ*n as the triangle of the patch behind the cut has it.
 Traction traction_on_cut(const Discretization& whole, const Eigen::MatrixXd& stress,
-                         const ContactPressure& pressure, const Patch& patch) {
+                         const AdmissiblePair& pair, const Patch& patch) {
   const Mesh& mesh = whole.mesh;
   std::vector<bool> inside(mesh.triangles.size(), false);
   for (const int t : patch.parents) inside[t] = true;
@@ -48,8 +48,7 @@ Traction traction_on_cut(const Discretization& whole, const Eigen::MatrixXd& str
     const Point x = mesh.points[a] + s * (mesh.points[b] - mesh.points[a]);
     const Point reference = inverse * (x - map.origin);
     const Vector sigma = whole.spaces().row.values(map, reference) * stress.col(t);
-    const Eigen::RowVector2d rise =
-        pressure.potential_on(mesh, t) * quadratic_gradients(reference).transpose();
+    const Eigen::RowVector2d rise = pair.potential_on(mesh, t) * quadratic_gradients(reference).transpose();
     return normal.dot(sigma + curl(inverse, rise));
   })};
 }
@@ -79,7 +78,7 @@ PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stres
                        Patch patch, Progress& progress)
     : patch_(std::move(patch)),
       held_(whole.problem, patch_, displacement_on_cut(whole, pair.v, patch_), progress),
-      loaded_(whole.problem, patch_, traction_on_cut(whole, stress, pair.pressure, patch_), progress),
+      loaded_(whole.problem, patch_, traction_on_cut(whole, stress, pair, patch_), progress),
       stress_(on_patch(whole, stress, patch_)),
       change_(loaded_.solution().stress - stress_),
       first_(first_pair(progress)),
@@ -101,7 +100,7 @@ AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
 Vector PatchPairs::delta(int t, const Point& reference) const {
   const AffineMap map(patch_.mesh->corners(t));
   const Eigen::RowVector2d rise =
-      first_.pressure.potential_on(*patch_.mesh, t) * quadratic_gradients(reference).transpose();
+      first_.potential_on(*patch_.mesh, t) * quadratic_gradients(reference).transpose();
   return problem().spaces().row.values(map, reference) * change_.col(t) + curl(map.jacobian.inverse(), rise);
 }
 

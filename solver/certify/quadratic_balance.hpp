@@ -28,6 +28,10 @@ class QuadraticBalance {
   /// Times the data, which must balance: τ at a point of the reference triangle, before the Piola map. Of the
   /// functions with these data, which differ by the curl of the cubic bubble, the least.
   static Values reference_values(const Point& reference);
+  /// τ on a triangle at the image of the point.
+  static Vector value(const AffineMap& map, const Point& reference, const Data& data) {
+    return map.jacobian * (reference_values(reference) * data) / map.determinant;
+  }
 
  private:
   const Discretization& problem_;

@@ -45,17 +45,19 @@ Eigen::Index functions(const Mesh& mesh) {
   return static_cast<Eigen::Index>(mesh.points.size() + mesh.edges.size());
 }
 
-/// The second derivative of ½ ‖∇v‖²_E. The modulus is constant on each triangle, or linear: then it is that
+using Modulus = Eigen::Matrix2d (*)(const Law<1>&);
+
+/// The second derivative of ½ ‖∇v‖²_M. The modulus is constant on each triangle, or linear: then it is that
 /// at the corners times the hats.
 class Curvature {
  public:
-  explicit Curvature(const Discretization& problem) : mesh_(problem.mesh) {
+  Curvature(const Discretization& problem, Modulus of) : mesh_(problem.mesh) {
     if (problem.element.has_constant_material())
       products_.emplace_back([](const Point&) { return 1.; });
     else
       for (int z = 0; z < 3; ++z)
         products_.emplace_back([z](const Point& x) { return triangle_basis(1, x)[z]; });
-    take_moduli(problem);
+    take_moduli(problem, of);
   }
 
   void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
@@ -91,7 +93,7 @@ class Curvature {
     return moduli_.col(t).segment<3>(3 * static_cast<Eigen::Index>(i));
   }
 
-  void take_moduli(const Discretization& problem) {
+  void take_moduli(const Discretization& problem, Modulus of) {
     LawField<1> law(problem.problem.material);
     const bool constant = products_.size() == 1;
     const CornerWeights weights = corner_weights();
@@ -100,7 +102,7 @@ class Curvature {
       const AffineMap map(mesh_.corners(t));
       const Eigen::Matrix2d inverse = map.jacobian.inverse();
       const auto at = [&](const Point& x) -> Eigen::Vector3d {
-        const Eigen::Matrix2d e = map.determinant * inverse * law(x).stiffness * inverse.transpose();
+        const Eigen::Matrix2d e = map.determinant * inverse * of(law(x)) * inverse.transpose();
         return {e(0, 0), e(0, 1), e(1, 1)};
       };
       if (constant)
@@ -178,9 +180,37 @@ Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField&
   return work;
 }
 
-void relax(const Discretization& problem, QuadraticValues& values, const Eigen::VectorXd& work, int steps,
-           Progress& progress) {
-  const Curvature curvature(problem);
+QuadraticValues::QuadraticValues(const Mesh& mesh)
+    : points(Eigen::VectorXd::Zero(mesh.points.size())),
+      middles(Eigen::VectorXd::Zero(mesh.edges.size())),
+      held_points(mesh.points.size(), false),
+      held_middles(mesh.edges.size(), false) {}
+
+Quadratic<1> QuadraticValues::on(const Mesh& mesh, int t) const {
+  Quadratic<1> own;
+  for (int k = 0; k < 3; ++k) {
+    own[k] = points[mesh.triangles[t][k]];
+    own[3 + k] = middles[mesh.triangle_edges[t][k]];
+  }
+  return own;
+}
+
+void QuadraticValues::hold(const Mesh& mesh, int edge) {
+  held_middles[edge] = true;
+  for (const int point : mesh.edges[edge]) held_points[point] = true;
+}
+
+Eigen::Matrix2d stiffness_of(const Law<1>& law) {
+  return law.stiffness;
+}
+
+Eigen::Matrix2d turned_compliance_of(const Law<1>& law) {
+  return law.stiffness / law.stiffness.determinant();
+}
+
+void relax(const Discretization& problem, Modulus modulus, QuadraticValues& values,
+           const Eigen::VectorXd& work, int steps, Progress& progress) {
+  const Curvature curvature(problem, modulus);
   const Eigen::Index points = values.points.size();
   Eigen::VectorXd v(work.size());
   v << values.points, values.middles;

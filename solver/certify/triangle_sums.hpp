@@ -26,7 +26,8 @@ struct TriangleSums {
   TriangleSums& operator+=(const TriangleSums& other);
 };
 
-/// Membrane: σ* is σ_h, the curl of the potential of the pressure and the quadratic balance; v is v_h. On a
+/// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v is
+/// v_h. On a
 /// patch σ* has a change of its own besides, and there is a second pair.
 class MembraneSums {
  public:

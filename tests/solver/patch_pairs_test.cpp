@@ -261,36 +261,31 @@ TEST(Relaxation, TendsToTheLeastEnergyWhereTheModulusVaries) {
   problem.material = MembraneStiffness{rising(2, 1), Field(0.3), rising(-0.5, 3)};
   const Mesh mesh = rectangle_mesh(std::get<Rectangle>(problem.domain), {4, 4}, Pattern::right);
   const Discretization discretization(problem, mesh);
-  const auto points = static_cast<Eigen::Index>(mesh.points.size()),
-             middles = static_cast<Eigen::Index>(mesh.edges.size());
-  QuadraticValues v{Eigen::VectorXd::Zero(points), Eigen::VectorXd::Zero(middles),
-                    std::vector<bool>(mesh.points.size(), false),
-                    std::vector<bool>(mesh.edges.size(), false)};
+  QuadraticValues v(mesh);
   for (const BoundaryPart& part : mesh.boundary)
-    for (const int edge : part.edges) {
-      v.held_middles[edge] = true;
-      for (const int point : mesh.edges[edge]) v.held_points[point] = true;
-    }
+    for (const int edge : part.edges) v.hold(mesh, edge);
   Observer observer;
   Progress progress(observer, std::nullopt);
   const Eigen::VectorXd work = work_of_loads(discretization);
-  relax(discretization, v, work, 500, progress);
+  relax(discretization, stiffness_of, v, work, 500, progress);
   LawField<1> law(problem.material);
   const Eigen::VectorXd reaction = work_of_stress(discretization, [&](int t, const Point& x) -> Vector {
-    Quadratic<1> own;
-    for (int k = 0; k < 3; ++k) {
-      own[k] = v.points[mesh.triangles[t][k]];
-      own[3 + k] = v.middles[mesh.triangle_edges[t][k]];
-    }
     const AffineMap map(mesh.corners(t));
     return law(map(x)).stiffness *
-           gradient<1>(map.jacobian.inverse(), own * quadratic_gradients(x).transpose());
+           gradient<1>(map.jacobian.inverse(), v.on(mesh, t) * quadratic_gradients(x).transpose());
   });
   ASSERT_GT(work.norm(), 0.1);
+  const Eigen::Index points = v.points.size();
   for (Eigen::Index i = 0; i < work.size(); ++i)
     if (!(i < points ? v.held_points[i] : v.held_middles[i - points])) {
       EXPECT_NEAR(reaction[i], work[i], 1e-12);
     }
+}
+
+TEST(Relaxation, MeasuresACurlByTheGradient) {
+  const Law<1> law(Eigen::Matrix2d{{2, 0.3}, {0.3, 0.7}});
+  const Vector slope(0.4, -1.1), curl(slope.y(), -slope.x());
+  EXPECT_NEAR(slope.dot(turned_compliance_of(law) * slope), curl.dot(law.compliance * curl), 1e-14);
 }
 
 }  // namespace
