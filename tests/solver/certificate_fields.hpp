@@ -85,6 +85,7 @@ class CertificateFields {
         AdmissiblePair{{discretization_, solution_, x}, {discretization_, solution_.stress, clearance}});
     pair_->v.relax(work_of_loads(discretization_), kStepsFromAverage, progress_);
     minimize_potential(discretization_, pair_->v, clearance, pair_->pressure, progress_);
+    pair_->of_balance = potential_of_balance(discretization_, progress_);
   }
 
   const Discretization& discretization() const { return discretization_; }
@@ -111,12 +112,11 @@ class CertificateFields {
     return discretization_.spaces().row.values(map, reference) * solution_.stress.col(t);
   }
 
-  /// σ*.
+  /// σ* but for the balance, which has no traction on the edges inside.
   Vector admissible_stress(int t, const Point& reference) const {
     const AffineMap map(mesh().corners(t));
-    const Vector rise =
-        map.jacobian.inverse().transpose() *
-        (quadratic_gradients(reference) * pair_->pressure.potential_on(mesh(), t).transpose());
+    const Vector rise = map.jacobian.inverse().transpose() *
+                        (quadratic_gradients(reference) * pair_->potential_on(mesh(), t).transpose());
     return stress(t, reference) + Vector(rise.y(), -rise.x());
   }
 

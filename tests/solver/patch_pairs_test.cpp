@@ -202,10 +202,11 @@ TEST_P(PatchPairsOfTheEdge, AreAdmissible) {
 }
 
 /// v and σ*n go on across the cut.
-TEST_P(PatchPairsOfTheEdge, FitTheirSurroundings) {
-  for (const auto& pairs : all_) {
+void expect_to_fit(const CertificateFields& of_whole,
+                   const std::vector<std::unique_ptr<const PatchPairs>>& all) {
+  for (const auto& pairs : all) {
     const OnPatch on(*pairs);
-    const Mesh &mesh = *pairs->patch().mesh, &whole = whole_.mesh();
+    const Mesh &mesh = *pairs->patch().mesh, &whole = of_whole.mesh();
     const auto cut = std::ranges::find(mesh.boundary, Submesh::kCut, &BoundaryPart::name);
     if (cut == mesh.boundary.end()) continue;
     for (const int edge : cut->edges) {
@@ -224,12 +225,37 @@ TEST_P(PatchPairsOfTheEdge, FitTheirSurroundings) {
       ASSERT_NE(outside, pairs->patch().cut.end());
       for (const int neighbour : whole.edge_triangles[*outside])
         EXPECT_NEAR(normal.dot(on.sigma(t, reference_in(mesh, t))),
-                    normal.dot(whole_.admissible_stress(neighbour, reference_in(whole, neighbour))), 1e-10);
+                    normal.dot(of_whole.admissible_stress(neighbour, reference_in(whole, neighbour))), 1e-10);
       const Point &a = whole.points[whole.edges[*outside][0]], &b = whole.points[whole.edges[*outside][1]];
       const double s = (x - a).norm() / (b - a).norm();
       for (const AdmissiblePair* pair : {&pairs->first(), &pairs->second()})
-        EXPECT_NEAR(pair->v.on_edge(edge, 0.5)[0], whole_.pair().v.on_edge(*outside, s)[0], 1e-12);
+        EXPECT_NEAR(pair->v.on_edge(edge, 0.5)[0], of_whole.pair().v.on_edge(*outside, s)[0], 1e-12);
     }
+  }
+}
+
+TEST_P(PatchPairsOfTheEdge, FitTheirSurroundings) {
+  expect_to_fit(whole_, all_);
+}
+
+/// A load that varies besides, so that σ* has the potential of its balance; and contact that stays closed up
+/// to a corner.
+TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
+  Problem problem = problems::random(7);
+  problem.scheme = Scheme::conforming;
+  CertificateFields whole(problem, std::make_shared<const Mesh>(rectangle_mesh(
+                                       std::get<Rectangle>(problem.domain),
+                                       std::get<Divisions>(problem.mesh.fineness), problem.mesh.pattern)));
+  ASSERT_TRUE(whole.pair().of_balance.has_value());
+  const auto all = pairs_of(whole);
+  ASSERT_EQ(all.size(), 2u);
+  expect_to_fit(whole, all);
+  for (const auto& pairs : all) {
+    Totals totals(whole.discretization().triangles());
+    totals.add<1>(pairs->problem(), pairs->first(), MembraneSums(*pairs), pairs->patch().parents,
+                  whole.progress(), &pairs->second());
+    const TriangleSums& sums = totals.all;
+    EXPECT_LT(sums.correction - 2 * sums.along + sums.span, 0.03 * sums.correction);
   }
 }
 
