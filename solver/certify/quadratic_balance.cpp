@@ -7,6 +7,9 @@
 namespace signorini {
 namespace {
 
+/// Below this part of what there is, what lacks is rounding.
+constexpr double kRounding = 1e-14;
+
 constexpr int kData = QuadraticBalance::kData, kFluxes = QuadraticBalance::kFluxes;
 using Values = QuadraticBalance::Values;
 
@@ -53,6 +56,20 @@ Eigen::Matrix<double, kData, kData> functions_of_data() {
 
 }  // namespace
 
+bool QuadraticBalance::is_needed() const {
+  if (problem_.load_varies) return true;
+  for (int edge = 0; edge < static_cast<int>(problem_.mesh.edges.size()); ++edge)
+    if (traction_.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
+  return false;
+}
+
+Eigen::Vector3d QuadraticBalance::lacking_on(int edge) const {
+  const auto own = [&](double s) { return traction_(edge, 0, s); };
+  const Eigen::Vector3d all = projection_at_nodes(2, own),
+                        lacking = all - projection_at_nodes(problem_.spaces().order, own);
+  return lacking.norm() <= kRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
+}
+
 std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, LoadValues<1>& load) const {
   const int order = problem_.spaces().order;
   const Mesh& mesh = problem_.mesh;
@@ -63,17 +80,15 @@ std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, LoadVa
     lacking.array() -= balanced.rightCols<3>().mean();
   else
     lacking -= at_nodes<1>(load.linear(t));
-  constexpr double rounding = 1e-14;
-  if (lacking.norm() <= rounding * balanced.norm()) lacking.setZero();
+  if (lacking.norm() <= kRounding * balanced.norm()) lacking.setZero();
   Data data = Data::Zero();
   data.tail<6>() = -twice_area * lacking.transpose();
   for (int e = 0; e < 3; ++e) {
     const int edge = mesh.triangle_edges[t][e];
     if (!traction_.acts_on(edge)) continue;
-    const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
-    const auto own = [&](double s) { return traction_(edge, 0, forward ? s : 1 - s); };
-    data.segment<3>(3 * e) =
-        mesh.length(edge) * (projection_at_nodes(2, own) - projection_at_nodes(order, own));
+    Eigen::Vector3d own = mesh.length(edge) * lacking_on(edge);
+    if (mesh.triangles[t][(e + 1) % 3] != mesh.edges[edge][0]) std::swap(own[0], own[1]);
+    data.segment<3>(3 * e) = own;
   }
   if (data.isZero(0)) return std::nullopt;
   return data;

@@ -22,6 +22,9 @@ class QuadraticBalance {
   using Data = Eigen::Matrix<double, kData, 1>;
   using Values = Eigen::Matrix<double, 2, kData>;
 
+  /// Somewhere there may be some.
+  bool is_needed() const;
+
   /// None where the data are constant or balanced by σ_h.
   std::optional<Data> operator()(int t, LoadValues<1>& load) const;
 
@@ -34,6 +37,9 @@ class QuadraticBalance {
   }
 
  private:
+  /// τn at both ends and in the middle of an edge of Γ_F.
+  Eigen::Vector3d lacking_on(int edge) const;
+
   const Discretization& problem_;
   TractionField traction_;
 };

@@ -24,6 +24,7 @@ void Discretization::take_up_body_load() {
   for (int t = 0; t < triangles(); ++t) {
     const TriangleLoad own = element.load(mesh, t);
     load.col(t) = own.force;
+    load_varies = load_varies || own.varies;
     if (!spaces().leaves_couples()) continue;
     couples[t] = own.couple;
     for (const int point : mesh.triangles[t]) coupling_load[traces.rotation_at(point)] -= own.couple / 3;

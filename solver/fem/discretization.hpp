@@ -22,8 +22,9 @@ struct Discretization {
   const Problem& problem;
   const Mesh& mesh;
   Element element;
-  Eigen::MatrixXd load;     ///< F, a column a triangle
-  Eigen::VectorXd couples;  ///< of the load, for each triangle; empty unless the spaces leave them
+  Eigen::MatrixXd load;      ///< F, a column a triangle
+  bool load_varies = false;  ///< f is not the same all over some triangle
+  Eigen::VectorXd couples;   ///< of the load, for each triangle; empty unless the spaces leave them
   ClearanceSpace clearance;
   TraceSpace traces;
   /// What acts on the coupling itself, an entry an unknown: <t, μ> on Γ_F, and against the rotation the

@@ -107,12 +107,15 @@ TriangleLoad Element::load(const Mesh& mesh, int triangle) const {
   const Point centroid = mesh.centroid(triangle);
   const int d = spaces_.components;
   TriangleLoad load{LocalVector::Zero(spaces_.displacements())};
+  std::array<double, 2> first{};
   for (int q = 0; q < TriangleRule::size; ++q) {
     const Point x = map(triangle_rule().points[q]);
     const Vector arm = turned_left(x - centroid);
     const double weight = triangle_rule().weights[q] * map.determinant;
     for (int c = 0; c < d; ++c) {
       const double f = problem_.body(c, x);
+      if (q == 0) first[c] = f;
+      load.varies = load.varies || f != first[c];
       for (int i = 0; i < v_[q].size(); ++i) load.force[i * d + c] += weight * f * v_[q][i];
       if (d == 2) load.couple += weight * f * arm[c];
     }

@@ -18,8 +18,9 @@ struct ElementMatrices {
 
 /// What the body load does to one triangle.
 struct TriangleLoad {
-  LocalVector force;  ///< F = (f, v_i)
-  double couple = 0;  ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
+  LocalVector force;    ///< F = (f, v_i)
+  double couple = 0;    ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
+  bool varies = false;  ///< f is not the same at all points of the rule
 };
 
 /// Computes the matrices and loads of the triangles of a problem: C is the compliance of its material, f its
