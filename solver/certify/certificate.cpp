@@ -3,6 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "certify/least_airy.hpp"
 #include "certify/least_potential.hpp"
 #include "certify/patch_pairs.hpp"
 #include "certify/relaxation.hpp"
@@ -63,6 +64,8 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     const Owners owners = add_patches(problem, solution, pair, totals, progress);
     totals.add<1>(problem, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
   } else {
+    if (problem.spaces().order == 1)
+      minimize_airy(problem, solution.stress, pair.v, clearance, pair.pressure, progress);
     const EdgeTractions tractions(problem, solution.stress, pair.pressure);
     add(unmet, tractions.unmet());
     progress.check();

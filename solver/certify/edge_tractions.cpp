@@ -162,9 +162,19 @@ void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
   }
 }
 
-/// On Γ_C the traction changes by −(p* − p_h) d. Into the body the Airy function goes on with ψ and ∇ψ = 0 at
-/// all other points, cubic along each edge and with a linear normal derivative (the reduced element of Hsieh,
-/// Clough and Tocher): its traction is the derivative of w = (∂_y ψ, −∂_x ψ), w·n = ψ', w·t = −∂_n ψ.
+Eigen::Matrix2d EdgeTractions::of_airy(const ContactPressure::Airy& a, const ContactPressure::Airy& b,
+                                       const Vector& way) {
+  const double length = way.norm();
+  const Vector t = way / length, n(t.y(), -t.x());
+  const double rise = (b.value - a.value) / length, slope_a = a.gradient.dot(t), slope_b = b.gradient.dot(t);
+  const Vector along = -(b.gradient - a.gradient).dot(n) / length * t;
+  Eigen::Matrix2d ends;
+  ends << (6 * rise - 4 * slope_a - 2 * slope_b) / length * n + along,
+      (-6 * rise + 2 * slope_a + 4 * slope_b) / length * n + along;
+  return ends;
+}
+
+/// On Γ_C the traction changes by −(p* − p_h) d.
 void EdgeTractions::change_pressure(const ContactPressure& pressure) {
   const Mesh& mesh = problem_.mesh;
   std::vector<bool> on_contact(mesh.edges.size(), false);
@@ -187,17 +197,7 @@ void EdgeTractions::change_pressure(const ContactPressure& pressure) {
     if (on_contact[edge] || !(pressure.airy_at_points.contains(p) || pressure.airy_at_points.contains(q)))
       continue;
     const auto [from, to] = domain_on_the_left(mesh, edge);
-    const ContactPressure::Airy a = airy(from), b = airy(to);
-    const Vector way = mesh.points[to] - mesh.points[from];
-    const double length = way.norm();
-    const Vector t = way / length, n(t.y(), -t.x());
-    const double rise = (b.value - a.value) / length, slope_a = a.gradient.dot(t),
-                 slope_b = b.gradient.dot(t);
-    const double bend_a = (6 * rise - 4 * slope_a - 2 * slope_b) / length,
-                 bend_b = (-6 * rise + 2 * slope_a + 4 * slope_b) / length;
-    const Vector along = -(b.gradient - a.gradient).dot(n) / length * t;
-    at(edge).col(0) += bend_a * n + along;
-    at(edge).col(1) += bend_b * n + along;
+    at(edge) += of_airy(airy(from), airy(to), mesh.points[to] - mesh.points[from]);
   }
 }
 

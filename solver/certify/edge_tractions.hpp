@@ -18,6 +18,10 @@ namespace signorini {
 /// the asymmetry. as(σ_h) and the couples of the loads are orthogonal to every hat function φ_z, therefore
 /// normal bubbles on the edges around z exist whose fluxes balance them in each triangle at z (the flux
 /// equilibration of Braess and Schöberl 2008, applied to the rotation).
+///
+/// Into the body the Airy function is cubic along each edge, with a linear normal derivative (the reduced
+/// element of Hsieh, Clough and Tocher): its traction is the derivative of w = (∂_y ψ, −∂_x ψ), w·n = ψ',
+/// w·t = −∂_n ψ.
 class EdgeTractions {
  public:
   EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
@@ -28,6 +32,11 @@ class EdgeTractions {
   Eigen::Matrix<double, 2, 3> on(int t, int e) const;
 
   const std::vector<std::string>& unmet() const { return unmet_; }
+
+  /// The traction of an Airy function at both ends of an edge, seen from where the way from a to b has the
+  /// domain on its left.
+  static Eigen::Matrix2d of_airy(const ContactPressure::Airy& a, const ContactPressure::Airy& b,
+                                 const Vector& way);
 
  private:
   Eigen::Matrix2d& at(int edge) { return tractions_[edge]; }

@@ -1,3 +1,4 @@
+#include "certify/macro_data.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
@@ -22,22 +23,8 @@ ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution
       composite_(problem.spaces(), kCuts),
       shapes_(problem) {}
 
-/// The data of the macro-element: J⁻¹ t |e| for the tractions, −det J J⁻¹ Πf for the divergence.
-Eigen::Matrix<double, MacroElement::kData, 1> ElasticSums::data_of(int t, const AffineMap& map,
-                                                                   LoadValues<2>& load) const {
-  const Eigen::Matrix2d inverse = map.jacobian.inverse();
-  const auto corners = problem_.mesh.corners(t);
-  Eigen::Matrix<double, MacroElement::kData, 1> data;
-  for (int e = 0; e < 3; ++e) {
-    const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
-    data.segment<6>(6 * e) = (inverse * tractions_.on(t, e) * length).reshaped();
-  }
-  data.tail<12>() = (-map.determinant * inverse * load.projection(t).balanced).reshaped();
-  return data;
-}
-
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map, LoadValues<2>& load) const {
-  return {data_of(t, map, load), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+  return {macro_data(tractions_, load, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
 }
 
 /// The operators of the triangle's shape, or null.
@@ -46,14 +33,6 @@ const MacroNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>
   if (++shape.seen == kOften)
     shape.norms = std::make_unique<const MacroNorms>(plain_, map, SymmetricLaw(law(map({0, 0})).compliance));
   return shape.norms.get();
-}
-
-std::vector<SymmetricLaw> ElasticSums::laws_at(const MacroRule& rule, const AffineMap& map,
-                                               LawField<2>& law) const {
-  std::vector<SymmetricLaw> laws;
-  const std::size_t count = problem_.element.has_constant_material() ? 1 : rule.places.size();
-  for (std::size_t q = 0; q < count; ++q) laws.emplace_back(law(map(rule.places[q].point)).compliance);
-  return laws;
 }
 
 /// The strains of what is lifted into the triangle.
@@ -111,7 +90,7 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, LoadValues<2>& loa
   }
   const MacroRule& rule = lifted ? composite_ : plain_;
   if (lifted) given.lifted = lifted_strains(t, map, rule);
-  const MacroValues<1> values(rule, map, given, laws_at(rule, map, law));
+  const MacroValues<1> values(rule, map, given, laws_at(problem_, rule, map, law));
   return {values.gap.squaredNorm(),
           values.direct_gap.squaredNorm(),
           values.correction.squaredNorm(),

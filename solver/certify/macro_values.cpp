@@ -75,6 +75,14 @@ SymmetricLaw::SymmetricLaw(const Eigen::Matrix4d& c) {
   skew_compliance = rotation.dot(c * rotation);
 }
 
+std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
+                                  LawField<2>& law) {
+  std::vector<SymmetricLaw> laws;
+  const std::size_t count = problem.element.has_constant_material() ? 1 : rule.places.size();
+  for (std::size_t q = 0; q < count; ++q) laws.emplace_back(law(map(rule.places[q].point)).compliance);
+  return laws;
+}
+
 template <int Columns>
 MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
                                   std::span<const SymmetricLaw> laws) {

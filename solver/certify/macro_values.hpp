@@ -5,6 +5,7 @@
 
 #include "certify/local_fields.hpp"
 #include "certify/macro_element.hpp"
+#include "fem/discretization.hpp"
 
 namespace signorini {
 
@@ -42,6 +43,10 @@ struct SymmetricLaw {
   Eigen::Matrix3d compliance, stiffness, factor;
   double skew_compliance;
 };
+
+/// The law at every point of the rule, or one for all if the material is constant.
+std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
+                                  LawField<2>& law);
 
 /// What the bound integrates over a triangle, for any number of columns of what describes it: the data of the
 /// macro-element, the coefficients of σ_h, and v_h at the nodes of P2 (x and y in turns). All is linear in

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "certify/layers.hpp"
+
 namespace signorini {
 namespace {
 
@@ -20,24 +22,13 @@ std::vector<int> points_with_potential(const ContactPressure& pressure) {
   return points;
 }
 
-/// The number of triangles that lie between a point and the given ones, at most kLayers.
-std::vector<int> layers_around(const Mesh& mesh, const std::vector<int>& points) {
-  std::vector<int> layers(mesh.points.size(), kLayers);
-  for (const int point : points) layers[point] = 0;
-  for (int layer = 1; layer < kLayers; ++layer)
-    for (const auto& corners : mesh.triangles)
-      if (std::ranges::any_of(corners, [&](int point) { return layers[point] == layer - 1; }))
-        for (const int point : corners) layers[point] = std::min(layers[point], layer);
-  return layers;
-}
-
 }  // namespace
 
 PotentialNodes::PotentialNodes(const Discretization& problem)
     : PotentialNodes(problem, std::vector<int>(problem.mesh.points.size(), 0)) {}
 
 PotentialNodes::PotentialNodes(const Discretization& problem, const ContactPressure& pressure)
-    : PotentialNodes(problem, layers_around(problem.mesh, points_with_potential(pressure))) {}
+    : PotentialNodes(problem, layers_around(problem.mesh, points_with_potential(pressure), kLayers)) {}
 
 PotentialNodes::PotentialNodes(const Discretization& problem, const std::vector<int>& layers)
     : mesh_(problem.mesh), numbers_(mesh_.points.size() + mesh_.edges.size(), -1) {

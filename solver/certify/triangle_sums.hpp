@@ -80,11 +80,8 @@ class ElasticSums {
 
   using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
 
-  Eigen::Matrix<double, MacroElement::kData, 1> data_of(int t, const AffineMap& map,
-                                                        LoadValues<2>& load) const;
   Given given_on(int t, const AffineMap& map, LoadValues<2>& load) const;
   const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
-  std::vector<SymmetricLaw> laws_at(const MacroRule& rule, const AffineMap& map, LawField<2>& law) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
   double work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
                       const Inner& inner) const;

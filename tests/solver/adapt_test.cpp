@@ -88,7 +88,7 @@ TEST(Adapt, HasTheBestRateForElasticBodies) {
   for (const Scheme scheme : schemes) {
     const bool conforming = scheme == Scheme::conforming;
     const Solution solution =
-        solve(adaptive(problems::pressed_angle(scheme), 1e-9, conforming ? 3000 : 6000), by(ActiveSet{}));
+        solve(adaptive(problems::pressed_angle(scheme), 1e-9, conforming ? 15000 : 6000), by(ActiveSet{}));
     EXPECT_LE(rate(solution.summary.levels, 300), conforming ? -0.95 : -0.48);
     EXPECT_TRUE(solution.summary.error_bound.value().guaranteed);
   }
