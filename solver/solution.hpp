@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -68,6 +69,14 @@ struct Reaction {
   double moment = 0;
 };
 
+/// A pressure that is linear on an edge of Γ_C.
+struct EdgePressure {
+  int edge;
+  std::array<double, 2> at_ends;  ///< at its first and its second point
+
+  double operator()(double s) const { return (1 - s) * at_ends[0] + s * at_ends[1]; }
+};
+
 /// A bound of the error in the energy norm, computed from the solution alone; see certify/certificate.hpp.
 /// Its parts are norms of the same unit, √(energy per unit depth).
 struct ErrorBound {
@@ -100,7 +109,7 @@ struct Timings {
 
 struct Summary {
   Outcome outcome = Outcome::converged;
-  std::string advice;  ///< empty if converged, else why not and what to try
+  std::string advice;              ///< empty if converged, else why not and what to try
   std::vector<std::string> notes;  ///< sentences on what was done that the problem did not ask for
   std::string method;              ///< `uzawa` or `active_set`
   int iterations = 0;
@@ -112,7 +121,7 @@ struct Summary {
   std::optional<ErrorBound> error_bound;  ///< none if its numbers leave the range of double precision
   std::vector<Reaction> parts;
   std::vector<Level> levels;  ///< of a mesh that refined itself
-  bool reused = false;  ///< the operator was there from an earlier solve
+  bool reused = false;        ///< the operator was there from an earlier solve
   Timings timings;
   std::int64_t peak_memory_bytes = 0;  ///< of the process, so far
 };
@@ -143,8 +152,8 @@ struct TrueErrors {
   std::optional<double> stress;        ///< ‖σ − σ_h‖ in L2
   std::optional<double> energy_norm;   ///< ‖σ − σ_h‖_C
   std::optional<double> energy;        ///< |J(u) − J_h|
-  /// √(‖σ − σ_h‖²_C + 2 (J(v) − J(u))) with v of the error bound, where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E +
-  /// 2 <p, g − v_n>: what the error bound bounds, but for its other contact term 2 <p*, g − u_n> ≥ 0.
+  /// What the error bound bounds: √(‖σ − σ_h‖²_C + 2 (J(v) − J(u)) + 2 <p*, g − u_n>) with its v and p*,
+  /// where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E + 2 <p, g − v_n>. The last term counts if u is known.
   std::optional<double> total;
 };
 
@@ -189,6 +198,9 @@ struct Solution {
 
   /// Entry t: what triangle t adds to the square of the error bound. Empty if there is none.
   Eigen::VectorXd error_squares;
+  /// p* ≥ 0 of the error bound on the edges where it is not 0, but for those where several pairs stand for
+  /// one (certify/patch_pairs.hpp).
+  std::vector<EdgePressure> admissible_pressure;
 
   std::vector<ContactPart> contact;
   std::vector<Iteration> history;

@@ -15,7 +15,8 @@ namespace {
 
 Eigen::VectorXd contact_pressure(const Discretization& problem, const Eigen::MatrixXd& stress) {
   Eigen::VectorXd forces;
-  contact_forces(problem, [&](int t) -> LocalVector { return stress.col(t); }, forces);
+  contact_forces(
+      problem, [&](int t) -> LocalVector { return stress.col(t); }, forces);
   return contact_pressure(problem.clearance, forces);
 }
 
@@ -218,6 +219,7 @@ Solution summarize(const Discretization& problem, Fields fields, const Settings&
   if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
     summary.error_bound = std::move(certificate.bound);
     solution.error_squares = std::move(certificate.squares);
+    solution.admissible_pressure = std::move(certificate.pressure);
   }
   summary.timings = timings(progress);
   summary.peak_memory_bytes = peak_memory_bytes();

@@ -1,6 +1,7 @@
 #include "true_errors.hpp"
 
 #include <cmath>
+#include <map>
 
 #include "certify/local_fields.hpp"
 #include "fem/lagrange.hpp"
@@ -89,6 +90,35 @@ Squares integrate(const Problem& problem, const Exact& exact, const Solution& so
   return squares;
 }
 
+/// 2 <p*, g − u_n>.
+double contact_term(const Problem& problem, const VectorField& u, const Solution& solution) {
+  const Mesh& mesh = solution.mesh;
+  std::map<int, EdgePressure> pressures;
+  for (const EdgePressure& own : solution.admissible_pressure) pressures.emplace(own.edge, own);
+  double sum = 0;
+  for (const BoundaryPart& part : mesh.boundary) {
+    const auto* contact = condition_on<Contact>(problem, part.name);
+    if (!contact) continue;
+    for (const int edge : part.edges) {
+      const auto found = pressures.find(edge);
+      if (found == pressures.end()) continue;
+      const auto& [a, b] = mesh.edges[edge];
+      const Vector normal = mesh.outward_normal(edge);
+      const Vector direction = contact->unit_direction(normal);
+      for (int q = 0; q < EdgeRule::size; ++q) {
+        const double s = edge_rule().points[q];
+        const Point x = mesh.points[a] + s * (mesh.points[b] - mesh.points[a]);
+        const double u_n = solution.components == 1
+                               ? -u(0, x, normal)
+                               : direction.x() * u(0, x, normal) + direction.y() * u(1, x, normal);
+        const double room = std::max(0., contact->gap(x, normal) - u_n);
+        sum += 2 * edge_rule().weights[q] * mesh.length(edge) * found->second(s) * room;
+      }
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 TrueErrors true_errors(const Problem& problem, const Exact& exact, const Solution& solution,
@@ -105,7 +135,8 @@ TrueErrors true_errors(const Problem& problem, const Exact& exact, const Solutio
   if (exact.energy) errors.energy = std::abs(summary.energy - *exact.energy);
   if (exact.energy && errors.energy_norm && summary.error_bound) {
     const double of_displacement = 2 * std::max(0., summary.error_bound->energy_upper - *exact.energy);
-    errors.total = std::sqrt(squares.energy_norm + of_displacement);
+    const double of_contact = exact.displacement ? contact_term(problem, *exact.displacement, solution) : 0;
+    errors.total = std::sqrt(squares.energy_norm + of_displacement + of_contact);
   }
   return errors;
 }

@@ -16,26 +16,35 @@ namespace {
 /// patch that cannot be solved, because nothing holds it, leaves the pair as it is. A mesh that refines
 /// itself is fine in these places already: there the bound would fall by an eighth, for more than its solves
 /// take.
-Owners add_patches(const Discretization& problem, const Solution& solution, const AdmissiblePair& pair,
-                   Totals& totals, Progress& progress) {
-  Owners owners(problem.triangles());
-  std::iota(owners.begin(), owners.end(), 0);
+void add_patches(const Discretization& problem, const Solution& solution, const AdmissiblePair& pair,
+                 Owners& owners, Totals& totals, Progress& progress) {
   const bool is_admissible = problem.spaces().order == 0 || pair.pressure.potential_at_points.empty();
-  if (is_admissible || problem.problem.mesh.adaptive) return owners;
+  if (is_admissible || problem.problem.mesh.adaptive) return;
   SilentObserver silent(progress.observer());
   Progress within(silent, std::nullopt);
   for (Patch& patch : patches_where_pressure_changes(problem, pair.pressure)) {
     try {
       const PatchPairs pairs(problem, solution.stress, pair, std::move(patch), within);
       if (!pairs.are_admissible()) continue;
-      totals.add<1>(pairs.problem(), pairs.first(), MembraneSums(pairs), pairs.patch().parents, within,
-                    &pairs.second());
+      totals.add<1>(pairs.problem(), LoadValues<1>(pairs.problem(), within), pairs.first(),
+                    MembraneSums(pairs), pairs.patch().parents, within, &pairs.second());
       for (const int t : pairs.patch().parents) owners[t] = -1;
     } catch (const std::runtime_error&) {
       continue;
     }
   }
-  return owners;
+}
+
+std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretization& problem,
+                                         const ContactPressure& pressure) {
+  std::vector<EdgePressure> all;
+  for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
+    const int edge = problem.clearance.edges[i].edge;
+    const auto& [first, second] = pressure.at_ends[i];
+    const bool is_owned = owners[problem.mesh.edge_triangles[edge][0]] >= 0;
+    if (is_owned && (first != 0 || second != 0)) all.push_back({edge, {first, second}});
+  }
+  return all;
 }
 
 void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
@@ -57,24 +66,27 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   if (solution.summary.residuals.equilibrium > equilibrium)
     unmet.push_back("the stress is not in equilibrium: the iteration ended before it was");
   Totals totals(problem.triangles());
+  Owners owners(problem.triangles());
+  std::iota(owners.begin(), owners.end(), 0);
   if (problem.spaces().components == 1) {
+    const LoadValues<1> load(problem, progress);
     pair.v.relax(work_of_loads(problem), kStepsFromAverage, progress);
     minimize_potential(problem, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = potential_of_balance(problem, progress);
-    const Owners owners = add_patches(problem, solution, pair, totals, progress);
-    totals.add<1>(problem, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
+    pair.of_balance = potential_of_balance(problem, load, progress);
+    add_patches(problem, solution, pair, owners, totals, progress);
+    totals.add<1>(problem, load, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
   } else {
+    const LoadValues<2> load(problem, progress);
     if (problem.spaces().order == 1)
-      minimize_airy(problem, solution.stress, pair.v, clearance, pair.pressure, progress);
+      minimize_airy(problem, load, solution.stress, pair.v, clearance, pair.pressure, progress);
     const EdgeTractions tractions(problem, solution.stress, pair.pressure);
     add(unmet, tractions.unmet());
     progress.check();
-    Owners all(problem.triangles());
-    std::iota(all.begin(), all.end(), 0);
-    totals.add<2>(problem, pair, ElasticSums(problem, solution, pair.v, tractions), all, progress);
+    totals.add<2>(problem, load, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
   }
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);
+  certificate.pressure = pressure_where(owners, problem, pair.pressure);
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
   return certificate;

@@ -11,6 +11,8 @@ struct Certificate {
   ErrorBound bound;
   /// Entry t: the square of the energy norm that triangle t adds to the bound: the guide for refinement.
   Eigen::VectorXd squares;
+  /// Solution::admissible_pressure.
+  std::vector<EdgePressure> pressure;
 };
 
 /// Bounds the error of a discrete solution (design.md, "The certificate"). With an admissible displacement v

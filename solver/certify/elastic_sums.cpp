@@ -23,7 +23,7 @@ ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution
       composite_(problem.spaces(), kCuts),
       shapes_(problem) {}
 
-ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map, LoadValues<2>& load) const {
+ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map, const LoadValues<2>& load) const {
   return {macro_data(tractions_, load, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
 }
 
@@ -68,7 +68,7 @@ double ElasticSums::work_of_load(int t, const AffineMap& map, const MacroRule& r
   return work;
 }
 
-TriangleSums ElasticSums::operator()(int t, LawField<2>& law, LoadValues<2>& load) {
+TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LoadValues<2>& load) {
   const AffineMap map(problem_.mesh.corners(t));
   Given given = given_on(t, map, load);
   const bool lifted = v_.is_lifted(t);

@@ -1,11 +1,8 @@
 #include "certify/least_airy.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseLU>
-
+#include "certify/admissible_minimum.hpp"
 #include "certify/layers.hpp"
 #include "certify/macro_data.hpp"
 #include "certify/macro_values.hpp"
@@ -14,17 +11,11 @@
 namespace signorini {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using Airy = ContactPressure::Airy;
 
 constexpr int kLayers = 6;
-constexpr int kSteps = 20;
-/// Ends that would stop a step within this part of it are kept together.
-constexpr double kTogether = 1e-3;
 /// Slopes of ψ below this part of the largest are left to their surroundings.
 constexpr double kHardly = 1e-3;
-/// What makes a system regular whose null space or dependent conditions are harmless.
-constexpr double kRegular = 1e-12;
 
 /// A point with its unknowns: (ψ, ∇ψ), or on Γ_C (ψ, b) with ∇ψ = b (d_y, −d_x).
 struct Place {
@@ -38,10 +29,8 @@ struct Place {
 struct Side {
   int number;  ///< in the clearance space
   int from, to;
-  bool forward;                            ///< from is the edge's first point
-  Eigen::Matrix<double, 2, 6> change;      ///< of p* at from and to, by (ψ, ∇ψ) there
-  Eigen::Vector2d room;                    ///< (g − v_n, φ) for the hats of from and to
-  std::array<bool, 2> kept{false, false};  ///< p* stays what it is at this end
+  bool forward;                        ///< from is the edge's first point
+  Eigen::Matrix<double, 2, 6> change;  ///< of p* at from and to, by (ψ, ∇ψ) there
 };
 
 Airy airy_of(const Eigen::Vector3d& values) {
@@ -50,66 +39,42 @@ Airy airy_of(const Eigen::Vector3d& values) {
 
 class Minimization {
  public:
-  Minimization(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissibleDisplacement& v,
-               const Eigen::VectorXd& clearance, ContactPressure& pressure)
+  Minimization(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,
+               ContactPressure& pressure)
       : problem_(problem),
         mesh_(problem.mesh),
         pressure_(pressure),
         side_of_edge_(mesh_.edges.size(), -1),
         places_(mesh_.points.size()) {
-    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i, v, clearance);
+    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i);
     place_unknowns();
-    assemble(stress, EdgeTractions(problem, stress, pressure));
-    found_ = Eigen::VectorXd::Zero(slope_.size());
+    assemble(load, stress, EdgeTractions(problem, stress, pressure));
   }
 
-  /// Goes towards the minimum as far as p* ≥ 0 allows. Returns false once it is there.
-  bool step() {
-    if (found_.size() == 0) return false;
-    const Sparse kept = kept_changes();
-    const Eigen::Index n = found_.size(), m = kept.rows();
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int k = 0; k < n; ++k)
-      for (Sparse::InnerIterator it(curvature_, k); it; ++it)
-        entries.emplace_back(it.row(), k, it.value() * (it.row() == k ? 1 + kRegular : 1));
-    for (int k = 0; k < n; ++k)
-      for (Sparse::InnerIterator it(kept, k); it; ++it) {
-        entries.emplace_back(n + it.row(), k, it.value());
-        entries.emplace_back(k, n + it.row(), it.value());
-      }
-    for (Eigen::Index i = 0; i < m; ++i) entries.emplace_back(n + i, n + i, -kRegular);
-    Sparse matrix(n + m, n + m);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseLU<Sparse> factor(matrix);
-    if (factor.info() != Eigen::Success) return false;
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(n + m);
-    right.head(n) = -(curvature_ * found_ + slope_);
-    const Eigen::VectorXd change = factor.solve(right).head(n);
-    if (!change.allFinite()) return false;
-    const double way = allowed(change);
-    found_ += way * change;
-    for (Side& side : sides_)
-      for (int end = 0; end < 2; ++end) {
-        if (side.kept[end]) continue;
-        const double own = change_of(side, end, change);
-        side.kept[end] = way < 1 && pressure(side, end) + (way + kTogether) * own <= 0;
-        move(side, end, way * own);
-      }
-    return way < 1;
+  void run(const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance, Progress& progress) {
+    std::vector<MovingPressure> moving;
+    for (const Side& side : sides_) {
+      std::array<LinearForm, 2> changes = changes_of(side);
+      if (changes[0].empty()) continue;
+      std::ranges::move(moving_pressures(problem_, v, clearance, side.number, std::move(changes)),
+                        std::back_inserter(moving));
+    }
+    store(admissible_minimum(curvature_, slope_, std::move(moving), pressure_, progress));
   }
 
-  void store() {
+ private:
+  void store(const Eigen::VectorXd& found) {
     for (std::size_t point = 0; point < places_.size(); ++point) {
-      if (places_[point].size() == 0) continue;
-      const Eigen::Vector3d own = at(static_cast<int>(point), found_);
+      const Place& place = places_[point];
+      if (place.size() == 0) continue;
+      const Eigen::Vector3d own = place.values * found.segment(place.first, place.size());
       Airy& airy = pressure_.airy_at_points[static_cast<int>(point)];
       airy.value += own[0];
       airy.gradient += own.tail<2>();
     }
   }
 
- private:
-  void add_side(int i, const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance) {
+  void add_side(int i) {
     const ContactEdge& contact = problem_.clearance.edges[i];
     const auto [from, to] = domain_on_the_left(mesh_, contact.edge);
     const Vector way = mesh_.points[to] - mesh_.points[from], d = contact.direction;
@@ -120,17 +85,9 @@ class Minimization {
     mean /= length * across;
     at_from << 0, d.y(), -d.x(), 0, 0, 0;
     at_to << 0, 0, 0, 0, d.y(), -d.x();
-    Side side{i, from, to, mesh_.edges[contact.edge][0] == from, {}, Eigen::Vector2d::Zero()};
+    Side side{i, from, to, mesh_.edges[contact.edge][0] == from, {}};
     side.change << (6 * mean - 4 * at_from - 2 * at_to) / length,
         (-6 * mean + 2 * at_from + 4 * at_to) / length;
-    for (int q = 0; q < EdgeRule::size; ++q) {
-      const double s = edge_rule().points[q];
-      const double room = edge_rule().weights[q] * length * std::max(0., v.room(contact, s));
-      const double to_first = room * (1 - s), to_second = room * s;
-      side.room += side.forward ? Eigen::Vector2d(to_first, to_second) : Eigen::Vector2d(to_second, to_first);
-    }
-    const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;
-    side.kept = {open, open};
     side_of_edge_[contact.edge] = static_cast<int>(sides_.size());
     sides_.push_back(side);
   }
@@ -172,7 +129,6 @@ class Minimization {
       unknowns += places_[point].size();
     }
     slope_ = Eigen::VectorXd::Zero(unknowns);
-    scale_ = Eigen::VectorXd::Ones(unknowns);
   }
 
   /// The change of a triangle's data by (ψ, ∇ψ) at its corners.
@@ -199,9 +155,8 @@ class Minimization {
     return data;
   }
 
-  void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
+  void assemble(const LoadValues<2>& load, const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
     const MacroRule rule(problem_.spaces(), 1);
-    LoadValues<2> load(problem_);
     LawField<2> law(problem_.problem.material);
     std::vector<Eigen::Triplet<double>> entries;
     for (int t = 0; t < problem_.triangles(); ++t) {
@@ -234,81 +189,21 @@ class Minimization {
         }
       }
     }
-    for (const Side& side : sides_) add(Eigen::RowVector2d(side.room) * side.change, side, slope_);
     curvature_.resize(slope_.size(), slope_.size());
     curvature_.setFromTriplets(entries.begin(), entries.end());
-    // ψ and its slopes have units of their own.
-    for (Eigen::Index i = 0; i < scale_.size(); ++i) scale_[i] = 1 / std::sqrt(curvature_.coeff(i, i));
-    curvature_ = scale_.asDiagonal() * curvature_ * scale_.asDiagonal();
-    slope_ = scale_.cwiseProduct(slope_).eval();
   }
 
-  /// Adds what acts on (ψ, ∇ψ) at both ends of a side to the unknowns.
-  void add(const Eigen::Matrix<double, 1, 6>& row, const Side& side, Eigen::VectorXd& all) const {
-    for (int end = 0; end < 2; ++end) {
-      const Place& place = places_[end == 0 ? side.from : side.to];
-      if (place.size() > 0)
-        all.segment(place.first, place.size()) += (row.segment<3>(3 * end) * place.values).transpose();
-    }
-  }
-
-  /// A row for each end of a side that keeps its pressure.
-  Sparse kept_changes() const {
-    std::vector<Eigen::Triplet<double>> entries;
-    int rows = 0;
-    for (const Side& side : sides_)
-      for (int end = 0; end < 2; ++end) {
-        if (!side.kept[end]) continue;
-        std::vector<std::pair<int, double>> own;
-        double largest = 0;
-        for (int k = 0; k < 2; ++k) {
-          const Place& place = places_[k == 0 ? side.from : side.to];
-          const Eigen::RowVectorXd row = side.change.block<1, 3>(end, 3 * k) * place.values;
-          for (int a = 0; a < place.size(); ++a) {
-            own.emplace_back(place.first + a, row[a] * scale_[place.first + a]);
-            largest = std::max(largest, std::abs(own.back().second));
-          }
-        }
-        if (largest == 0) continue;
-        for (const auto& [column, value] : own) entries.emplace_back(rows, column, value / largest);
-        ++rows;
+  /// Of p* at the edge's first and second point, by the unknowns.
+  std::array<LinearForm, 2> changes_of(const Side& side) const {
+    std::array<LinearForm, 2> changes;
+    for (int end = 0; end < 2; ++end)
+      for (int k = 0; k < 2; ++k) {
+        const Place& place = places_[k == 0 ? side.from : side.to];
+        const Eigen::RowVectorXd row = side.change.block<1, 3>(end, 3 * k) * place.values;
+        for (int a = 0; a < place.size(); ++a)
+          changes[side.forward ? end : 1 - end].emplace_back(place.first + a, row[a]);
       }
-    Sparse all(rows, found_.size());
-    all.setFromTriplets(entries.begin(), entries.end());
-    return all;
-  }
-
-  Eigen::Vector3d at(int point, const Eigen::VectorXd& scaled) const {
-    const Place& place = places_[point];
-    if (place.size() == 0) return Eigen::Vector3d::Zero();
-    return place.values *
-           scaled.segment(place.first, place.size()).cwiseProduct(scale_.segment(place.first, place.size()));
-  }
-
-  double change_of(const Side& side, int end, const Eigen::VectorXd& change) const {
-    Eigen::Matrix<double, 6, 1> own;
-    own << at(side.from, change), at(side.to, change);
-    return side.change.row(end).dot(own);
-  }
-
-  double& pressure(const Side& side, int end) {
-    return pressure_.at_ends[side.number][side.forward ? end : 1 - end];
-  }
-
-  void move(const Side& side, int end, double change) {
-    pressure(side, end) = std::max(0., pressure(side, end) + change);
-    pressure_.changes[side.number][side.forward ? end : 1 - end] += change;
-  }
-
-  /// The part of the way on which p* ≥ 0.
-  double allowed(const Eigen::VectorXd& change) {
-    double way = 1;
-    for (const Side& side : sides_)
-      for (int end = 0; end < 2; ++end) {
-        const double own = change_of(side, end, change), rest = pressure(side, end);
-        if (!side.kept[end] && rest + way * own < 0) way = rest / -own;
-      }
-    return way;
+    return changes;
   }
 
   const Discretization& problem_;
@@ -317,19 +212,17 @@ class Minimization {
   std::vector<int> side_of_edge_;  ///< of each edge of the mesh, or -1
   std::vector<Place> places_;      ///< of each point
   std::vector<Side> sides_;
-  Eigen::VectorXd slope_, scale_, found_;  ///< the last times the scale is the change of (ψ, ∇ψ)
-  Sparse curvature_;
+  Eigen::SparseMatrix<double> curvature_;
+  Eigen::VectorXd slope_;
 };
 
 }  // namespace
 
-void minimize_airy(const Discretization& problem, const Eigen::MatrixXd& stress,
+void minimize_airy(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,
                    const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
                    ContactPressure& pressure, Progress& progress) {
   if (pressure.airy_at_points.empty() || !pressure.unmet.empty()) return;
-  Minimization minimization(problem, stress, v, clearance, pressure);
-  for (int i = 0; i < kSteps && minimization.step(); ++i) progress.check();
-  minimization.store();
+  Minimization(problem, load, stress, pressure).run(v, clearance, progress);
 }
 
 }  // namespace signorini

@@ -18,12 +18,19 @@ double weight(int i) {
   return i % 2 == 0 ? half : -half;
 }
 
+Nodal all_nodes() {
+  Nodal nodes;
+  for (int i = 0; i < Lift::size; ++i) nodes[i] = node(i);
+  return nodes;
+}
+
 /// The Lagrange polynomials at s.
 Nodal lagrange(double s) {
+  static const Nodal nodes = all_nodes();
   Nodal values;
   for (int i = 0; i < Lift::size; ++i) {
-    if (s == node(i)) return Nodal::Unit(i);
-    values[i] = weight(i) / (s - node(i));
+    if (s == nodes[i]) return Nodal::Unit(i);
+    values[i] = weight(i) / (s - nodes[i]);
   }
   return values / values.sum();
 }

@@ -7,95 +7,104 @@
 namespace signorini {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-
 /// For a row of values at the points of a rule, the matrices that give the values of its projections: onto P1
 /// at the corners, onto P2 at the nodes, and what either leaves at the points, times the roots of the
 /// weights.
+template <typename Rule>
 struct Projections {
-  template <typename Rule>
+  static constexpr int kPoints = Rule::size;
+  using Square = Eigen::Matrix<double, kPoints, kPoints>;
+  template <int Functions>
+  using Onto = Eigen::Matrix<double, kPoints, Functions>;
+
   explicit Projections(const Rule& rule) {
-    const int points = Rule::size;
-    Matrix hats(3, points), quadratics(6, points);
-    Eigen::VectorXd weights(points);
-    for (int q = 0; q < points; ++q) {
-      hats.col(q) = triangle_basis(1, rule.points[q]);
-      quadratics.col(q) = quadratic_basis(rule.points[q]);
+    Onto<3> hats;
+    Onto<6> quadratics;
+    Eigen::Matrix<double, kPoints, 1> weights;
+    for (int q = 0; q < kPoints; ++q) {
+      hats.row(q) = triangle_basis(1, rule.points[q]).transpose();
+      quadratics.row(q) = quadratic_basis(rule.points[q]).transpose();
       weights[q] = rule.weights[q];
     }
-    const auto onto = [&](const Matrix& basis) -> Matrix {
-      const Matrix moments = weights.asDiagonal() * basis.transpose();
-      return moments * (basis * moments).inverse();
+    const auto onto = [&]<int Functions>(const Onto<Functions>& basis) -> Onto<Functions> {
+      const Onto<Functions> moments = weights.asDiagonal() * basis;
+      return moments * (basis.transpose() * moments).inverse();
     };
-    const Matrix identity = Matrix::Identity(points, points);
     linear = onto(hats);
     quadratic = onto(quadratics);
-    rest_of_linear = (identity - linear * hats) * weights.cwiseSqrt().asDiagonal();
-    rest_of_quadratic = (identity - quadratic * quadratics) * weights.cwiseSqrt().asDiagonal();
+    const Eigen::Matrix<double, kPoints, 1> roots = weights.cwiseSqrt();
+    rest_of_linear = (Square::Identity() - linear * hats.transpose()) * roots.asDiagonal();
+    rest_of_quadratic = (Square::Identity() - quadratic * quadratics.transpose()) * roots.asDiagonal();
   }
 
-  Matrix linear, quadratic, rest_of_linear, rest_of_quadratic;
+  Onto<3> linear;
+  Onto<6> quadratic;
+  Square rest_of_linear, rest_of_quadratic;
 };
 
-const Projections& projections() {
+const Projections<TriangleRule>& projections() {
   static const Projections all(triangle_rule());
   return all;
 }
 
-const Projections& fine_projections() {
+const Projections<FineTriangleRule>& fine_projections() {
   static const Projections all(fine_triangle_rule());
   return all;
+}
+
+/// Column q: f at point q of the rule.
+template <int D, typename Rule>
+Eigen::Matrix<double, D, Rule::size> at_points(const VectorField& body, const AffineMap& map,
+                                               const Rule& rule) {
+  Eigen::Matrix<double, D, Rule::size> f;
+  for (int q = 0; q < Rule::size; ++q) {
+    const Point x = map(rule.points[q]);
+    for (int c = 0; c < D; ++c) f(c, q) = body(c, x);
+  }
+  return f;
 }
 
 }  // namespace
 
 template <int D>
-const typename LoadValues<D>::AtPoints& LoadValues<D>::at_points(int t) {
-  const VectorField& body = problem_.problem.body;
-  if (body.size() == 0 || t == last_) return at_points_;
-  last_ = t;
-  const AffineMap map(problem_.mesh.corners(t));
-  for (int q = 0; q < TriangleRule::size; ++q) {
-    const Point x = map(triangle_rule().points[q]);
-    for (int c = 0; c < D; ++c) at_points_(c, q) = body(c, x);
-  }
-  return at_points_;
-}
-
-/// That of the conforming scheme is the one that σ_h balances.
-template <int D>
-typename LoadValues<D>::AtCorners LoadValues<D>::linear(int t) {
-  if (problem_.spaces().order == 0) return at_points(t) * projections().linear;
-  const double area = AffineMap(problem_.mesh.corners(t)).determinant / 2;
-  const AtCorners moments = problem_.load.col(t).reshaped(D, 3);
+Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t) {
+  const double area = AffineMap(problem.mesh.corners(t)).determinant / 2;
+  if (problem.spaces().order == 0) return (problem.load.col(t) / area).replicate(1, 3);
+  const Eigen::Matrix<double, D, 3> moments = problem.load.col(t).reshaped(D, 3);
   // The inverse of the mass matrix area/12 (1 + δ_ij) is 12/area (δ_ij − 1/4).
   return 12 / area * (moments.colwise() - moments.rowwise().sum() / 4);
 }
 
+template Eigen::Matrix<double, 1, 3> discrete_load<1>(const Discretization&, int);
+template Eigen::Matrix<double, 2, 3> discrete_load<2>(const Discretization&, int);
+
 template <int D>
-bool LoadValues<D>::is_linear(int t) {
-  if (!problem_.load_varies) return true;
-  const AtPoints& f = at_points(t);
-  constexpr double rounding = 1e-14;
-  return (f * projections().rest_of_linear).norm() <= rounding * f.norm();
+LoadValues<D>::LoadValues(const Discretization& problem, Progress& progress) : problem_(problem) {
+  if (!problem.load_varies) return;
+  varying_.reserve(problem.triangles());
+  for (int t = 0; t < problem.triangles(); ++t) {
+    progress.check_in(t);
+    varying_.push_back(project(t));
+  }
 }
 
 template <int D>
-const typename LoadValues<D>::Projection& LoadValues<D>::projection(int t) {
-  if (t == last_projected_) return projection_;
-  last_projected_ = t;
-  projection_ = {at_nodes<D>(linear(t)), 0};
-  if (is_linear(t)) return projection_;
+typename LoadValues<D>::Projection LoadValues<D>::project(int t) const {
+  Projection projection{at_nodes<D>(discrete_load<D>(problem_, t)), 0};
+  if (!problem_.load_varies) return projection;
+  const VectorField& body = problem_.problem.body;
   const AffineMap map(problem_.mesh.corners(t));
-  Eigen::Matrix<double, D, FineTriangleRule::size> f;
-  for (int q = 0; q < FineTriangleRule::size; ++q) {
-    const Point x = map(fine_triangle_rule().points[q]);
-    for (int c = 0; c < D; ++c) f(c, q) = problem_.problem.body(c, x);
-  }
-  const Projections& onto = fine_projections();
-  projection_.balanced += f * onto.quadratic - at_nodes<D>(f * onto.linear);
-  projection_.rest = std::sqrt(map.determinant) * (f * onto.rest_of_quadratic).norm();
-  return projection_;
+  const auto f = at_points<D>(body, map, triangle_rule());
+  if (problem_.spaces().order == 0)
+    projection.balanced = at_nodes<D>(Eigen::Matrix<double, D, 3>(f.lazyProduct(projections().linear)));
+  constexpr double rounding = 1e-14;
+  if (f.lazyProduct(projections().rest_of_linear).norm() <= rounding * f.norm()) return projection;
+  const auto fine = at_points<D>(body, map, fine_triangle_rule());
+  const auto& onto = fine_projections();
+  projection.balanced += fine.lazyProduct(onto.quadratic) -
+                         at_nodes<D>(Eigen::Matrix<double, D, 3>(fine.lazyProduct(onto.linear)));
+  projection.rest = std::sqrt(map.determinant) * fine.lazyProduct(onto.rest_of_quadratic).norm();
+  return projection;
 }
 
 template class LoadValues<1>;

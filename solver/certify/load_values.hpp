@@ -2,39 +2,32 @@
 
 #include "certify/local_fields.hpp"
 #include "fem/discretization.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 
-/// The load f on one triangle after the other, evaluated once for each.
+/// Column z: at corner z the projection of f onto P0 or P1 that σ_h balances.
+template <int D>
+Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t);
+
+/// The load f on all triangles, evaluated once.
 template <int D>
 class LoadValues {
  public:
-  explicit LoadValues(const Discretization& problem) : problem_(problem) {}
-
-  using AtPoints = Eigen::Matrix<double, D, TriangleRule::size>;
-  using AtCorners = Eigen::Matrix<double, D, 3>;
-
-  /// Column q: f at point q of the triangle rule. Valid until the next call.
-  const AtPoints& at_points(int t);
-
-  /// Column z: the projection of f onto P1 at corner z.
-  AtCorners linear(int t);
+  LoadValues(const Discretization& problem, Progress& progress);
 
   /// Πf, the load that σ* is in equilibrium with, and ‖f − Πf‖: the projection onto P2.
   struct Projection {
     Quadratic<D> balanced = Quadratic<D>::Zero();
     double rest = 0;
   };
-  /// Valid until the next call.
-  const Projection& projection(int t);
+  Projection projection(int t) const { return varying_.empty() ? project(t) : varying_[t]; }
 
  private:
-  bool is_linear(int t);
+  Projection project(int t) const;
 
   const Discretization& problem_;
-  int last_ = -1, last_projected_ = -1;
-  AtPoints at_points_ = AtPoints::Zero();
-  Projection projection_;
+  std::vector<Projection> varying_;  ///< empty if f is the same all over each triangle
 };
 
 }  // namespace signorini

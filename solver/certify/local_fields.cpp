@@ -51,4 +51,14 @@ Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference) {
   return gradients;
 }
 
+const std::array<Eigen::Matrix<double, 2, 6>, TriangleRule::size>& quadratic_gradients() {
+  static const auto all = [] {
+    std::array<Eigen::Matrix<double, 2, 6>, TriangleRule::size> gradients;
+    for (int q = 0; q < TriangleRule::size; ++q)
+      gradients[q] = quadratic_gradients(triangle_rule().points[q]);
+    return gradients;
+  }();
+  return all;
+}
+
 }  // namespace signorini

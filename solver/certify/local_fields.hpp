@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -65,12 +66,15 @@ Quadratic<D> at_nodes(const Eigen::Matrix<double, D, 3>& corners) {
   return nodes;
 }
 
-/// A stress of a membrane, by the triangle and the point of the reference triangle.
-using StressField = std::function<Vector(int t, const Point& reference)>;
-
 /// The six functions of P2 at a point of the reference triangle, and their gradients there by columns.
 Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
 Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference);
+/// The gradients at the points of the triangle rule.
+const std::array<Eigen::Matrix<double, 2, 6>, TriangleRule::size>& quadratic_gradients();
+
+/// A stress of a membrane on a triangle, a column a point of the triangle rule.
+using StressAtPoints = Eigen::Matrix<double, 2, TriangleRule::size>;
+using StressField = std::function<StressAtPoints(int t)>;
 
 /// The gradient, row by row, of a function on the triangle with the given reference gradients (row c: of
 /// component c).

@@ -14,6 +14,6 @@ Eigen::Matrix<double, 6, 1> traction_data(const AffineMap& map, int e,
                                           const Eigen::Matrix<double, 2, 3>& traction);
 
 /// The data of σ* on triangle t: its tractions, and −det J J⁻¹ Πf for the divergence.
-MacroData macro_data(const EdgeTractions& tractions, LoadValues<2>& load, int t, const AffineMap& map);
+MacroData macro_data(const EdgeTractions& tractions, const LoadValues<2>& load, int t, const AffineMap& map);
 
 }  // namespace signorini

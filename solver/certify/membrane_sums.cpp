@@ -52,7 +52,7 @@ MembraneSums::MembraneSums(const PatchPairs& pairs)
   change_ = &pairs.change();
 }
 
-TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& load) const {
+TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LoadValues<1>& load) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);
@@ -61,6 +61,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     w = v - second_->v.on<1>(t);
     potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
   }
+  const Quadratic<1> balanced = load.projection(t).balanced;
   const std::optional<QuadraticBalance::Data> balance = balance_(t, load);
   const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
   const Rule& rule = lifted ? composite_ : plain_;
@@ -70,11 +71,15 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, LoadValues<1>& lo
     const Point x = map(reference);
     const auto& [compliance, stiffness] = law(x);
     const double weight = share * map.determinant;
-    const double f = lifted ? problem_.problem.body(0, x) : load.at_points(t)[q];
     const Tensor<1> sigma = rule.stress(q, map, stress_.col(t));
     Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
-    if (lifted) pair_.v.add_lifts<1>(t, reference, inverse, value, slope);
+    // The rest of f is orthogonal to v, where that is quadratic.
+    double f = balanced * rule.basis[q];
+    if (lifted) {
+      pair_.v.add_lifts<1>(t, reference, inverse, value, slope);
+      f = problem_.problem.body(0, x);
+    }
     Tensor<1> correction = Tensor<1>::Zero();
     if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
     if (change_) correction += rule.stress(q, map, change_->col(t));

@@ -11,7 +11,7 @@
 namespace signorini {
 
 template <int D>
-double Oscillation<D>::operator()(int t, LawField<D>& law, LoadValues<D>& load) const {
+double Oscillation<D>::operator()(int t, LawField<D>& law, const LoadValues<D>& load) const {
   const auto corners = problem_.mesh.corners(t);
   const double rest = load.projection(t).rest;
   double sum = rest > 0 ? linear_remainder<D>(corners) * rest : 0;

@@ -18,7 +18,7 @@ class Oscillation {
   explicit Oscillation(const Discretization& problem)
       : problem_(problem), traction_(problem.problem, problem.mesh) {}
 
-  double operator()(int t, LawField<D>& law, LoadValues<D>& load) const;
+  double operator()(int t, LawField<D>& law, const LoadValues<D>& load) const;
 
  private:
   double of_traction(int edge) const;

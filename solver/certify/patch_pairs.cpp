@@ -68,10 +68,6 @@ Eigen::MatrixXd on_patch(const Discretization& whole, const Eigen::MatrixXd& str
   return all;
 }
 
-Vector slope(const AdmissibleDisplacement& v, const AffineMap& map, int t, const Point& reference) {
-  return gradient<1>(map.jacobian.inverse(), v.on<1>(t) * quadratic_gradients(reference).transpose());
-}
-
 }  // namespace
 
 PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stress, const AdmissiblePair& pair,
@@ -96,33 +92,45 @@ AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
   return pair;
 }
 
-/// δ of the first pair.
-Vector PatchPairs::delta(int t, const Point& reference) const {
-  const AffineMap map(patch_.mesh->corners(t));
-  const Eigen::RowVector2d rise =
-      first_.potential_on(*patch_.mesh, t) * quadratic_gradients(reference).transpose();
-  return problem().spaces().row.values(map, reference) * change_.col(t) + curl(map.jacobian.inverse(), rise);
-}
-
 /// v₂ minimises ‖E ε(v − v₂) − δ‖_C, and then σ*₂ what is left of that.
 AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
   constexpr int steps = 40;
+  const Mesh& mesh = *patch_.mesh;
+  const StressValues<1> stress_at(problem().spaces(), triangle_points());
   LawField<1> law(problem().problem.material);
-  const auto stress_of = [&](const AdmissibleDisplacement& v, int t, const Point& reference) -> Vector {
-    const AffineMap map(patch_.mesh->corners(t));
-    return law(map(reference)).stiffness * slope(v, map, t, reference);
+  const auto stress_of = [&](const AdmissibleDisplacement& v, int t) {
+    const AffineMap map(mesh.corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    const Quadratic<1> own = v.on<1>(t);
+    StressAtPoints stress;
+    for (int q = 0; q < TriangleRule::size; ++q)
+      stress.col(q) = law(map(triangle_rule().points[q])).stiffness *
+                      gradient<1>(inverse, own * quadratic_gradients()[q].transpose());
+    return stress;
+  };
+  // σ* − σ_h without the potential.
+  const auto change = [&](int t) {
+    const AffineMap map(mesh.corners(t));
+    StressAtPoints stress;
+    for (int q = 0; q < TriangleRule::size; ++q) stress.col(q) = stress_at(q, map, change_.col(t));
+    return stress;
+  };
+  const auto delta = [&](int t) {
+    const Eigen::Matrix2d inverse = AffineMap(mesh.corners(t)).jacobian.inverse();
+    const Quadratic<1> potential = first_.potential_on(mesh, t);
+    StressAtPoints stress = change(t);
+    for (int q = 0; q < TriangleRule::size; ++q)
+      stress.col(q) += curl(inverse, potential * quadratic_gradients()[q].transpose());
+    return stress;
   };
   AdmissiblePair pair = first_;
-  const Eigen::VectorXd work = work_of_stress(
-      problem(), [&](int t, const Point& x) -> Vector { return stress_of(first_.v, t, x) - delta(t, x); });
+  const Eigen::VectorXd work =
+      work_of_stress(problem(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
   pair.v.relax(work, steps, progress);
   // σ*₂ = σ* − δ + E ε(v − v₂) would be exact.
-  minimize_potential(loaded_.problem(), first_.v, loaded_.clearance(), pair.pressure, progress,
-                     [&](int t, const Point& x) -> Vector {
-                       const AffineMap map(patch_.mesh->corners(t));
-                       return stress_of(first_.v, t, x) - stress_of(pair.v, t, x) -
-                              problem().spaces().row.values(map, x) * change_.col(t);
-                     });
+  minimize_potential(
+      loaded_.problem(), first_.v, loaded_.clearance(), pair.pressure, progress,
+      [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - stress_of(pair.v, t) - change(t); });
   return pair;
 }
 

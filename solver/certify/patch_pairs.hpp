@@ -35,7 +35,6 @@ class PatchPairs {
  private:
   AdmissiblePair first_pair(Progress& progress) const;
   AdmissiblePair second_pair(Progress& progress) const;
-  Vector delta(int t, const Point& reference) const;
 
   Patch patch_;
   LocalContact held_, loaded_;

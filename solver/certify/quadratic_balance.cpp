@@ -70,16 +70,16 @@ Eigen::Vector3d QuadraticBalance::lacking_on(int edge) const {
   return lacking.norm() <= kRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
 }
 
-std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, LoadValues<1>& load) const {
+std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, const LoadValues<1>& load) const {
   const int order = problem_.spaces().order;
   const Mesh& mesh = problem_.mesh;
-  const Quadratic<1>& balanced = load.projection(t).balanced;
+  const Quadratic<1> balanced = load.projection(t).balanced;
   const double twice_area = AffineMap(mesh.corners(t)).determinant;
   Quadratic<1> lacking = balanced;
   if (order == 0)
     lacking.array() -= balanced.rightCols<3>().mean();
   else
-    lacking -= at_nodes<1>(load.linear(t));
+    lacking -= at_nodes<1>(discrete_load<1>(problem_, t));
   if (lacking.norm() <= kRounding * balanced.norm()) lacking.setZero();
   Data data = Data::Zero();
   data.tail<6>() = -twice_area * lacking.transpose();
@@ -96,7 +96,19 @@ std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, LoadVa
 
 QuadraticBalance::Values QuadraticBalance::reference_values(const Point& reference) {
   static const Eigen::Matrix<double, kData, kData> of_data = functions_of_data();
-  return functions(reference) * of_data;
+  return functions(reference).lazyProduct(of_data);
+}
+
+StressAtPoints QuadraticBalance::at_points(const AffineMap& map, const Data& data) {
+  static const auto values = [] {
+    std::array<Values, TriangleRule::size> all;
+    for (int q = 0; q < TriangleRule::size; ++q) all[q] = reference_values(triangle_rule().points[q]);
+    return all;
+  }();
+  StressAtPoints tau;
+  for (int q = 0; q < TriangleRule::size; ++q)
+    tau.col(q) = map.jacobian * values[q].lazyProduct(data) / map.determinant;
+  return tau;
 }
 
 }  // namespace signorini

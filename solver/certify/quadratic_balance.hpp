@@ -26,15 +26,13 @@ class QuadraticBalance {
   bool is_needed() const;
 
   /// None where the data are constant or balanced by σ_h.
-  std::optional<Data> operator()(int t, LoadValues<1>& load) const;
+  std::optional<Data> operator()(int t, const LoadValues<1>& load) const;
 
   /// Times the data, which must balance: τ at a point of the reference triangle, before the Piola map. Of the
   /// functions with these data, which differ by the curl of the cubic bubble, the least.
   static Values reference_values(const Point& reference);
-  /// τ on a triangle at the image of the point.
-  static Vector value(const AffineMap& map, const Point& reference, const Data& data) {
-    return map.jacobian * (reference_values(reference) * data) / map.determinant;
-  }
+  /// τ on a triangle at the points of the triangle rule.
+  static StressAtPoints at_points(const AffineMap& map, const Data& data);
 
  private:
   /// τn at both ends and in the middle of an edge of Γ_F.

@@ -19,9 +19,8 @@ struct Products {
   template <typename Weight>
   explicit Products(const Weight& weight_at) {
     for (int q = 0; q < TriangleRule::size; ++q) {
-      const Point& x = triangle_rule().points[q];
-      const double weight = triangle_rule().weights[q] * weight_at(x);
-      const Eigen::Matrix<double, 2, 6> slope = quadratic_gradients(x);
+      const double weight = triangle_rule().weights[q] * weight_at(triangle_rule().points[q]);
+      const Eigen::Matrix<double, 2, 6>& slope = quadratic_gradients()[q];
       xx += weight * slope.row(0).transpose() * slope.row(0);
       xy += weight * (slope.row(0).transpose() * slope.row(1) + slope.row(1).transpose() * slope.row(0));
       yy += weight * slope.row(1).transpose() * slope.row(1);
@@ -118,12 +117,6 @@ class Curvature {
   Eigen::MatrixXd moduli_;
 };
 
-/// Πf at the corners. Its mean will do for the nonconforming scheme.
-Eigen::Vector3d load_at_corners(const Discretization& problem, int t, double twice_area) {
-  if (problem.spaces().order == 1) return LoadValues<1>(problem).linear(t).transpose();
-  return Eigen::Vector3d::Constant(2 / twice_area * problem.load(0, t));
-}
-
 /// (φ, hat) for the six functions and the three hats, on the reference triangle.
 Eigen::Matrix<double, 6, 3> products_with_hats() {
   Eigen::Matrix<double, 6, 3> products = Eigen::Matrix<double, 6, 3>::Zero();
@@ -157,7 +150,7 @@ Eigen::VectorXd work_of_loads(const Discretization& problem) {
   const Eigen::Matrix<double, 6, 3> hats = products_with_hats();
   for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
     const double twice_area = AffineMap(problem.mesh.corners(t)).determinant;
-    const Local own = twice_area * hats * load_at_corners(problem, t, twice_area);
+    const Local own = twice_area * hats * discrete_load<1>(problem, t).transpose();
     for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
   });
   add_work_of_traction(problem, work);
@@ -169,12 +162,10 @@ Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField&
   for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
     const AffineMap map(problem.mesh.corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    const StressAtPoints stress = map.determinant * inverse * tau(t);
     Local own = Local::Zero();
-    for (int q = 0; q < TriangleRule::size; ++q) {
-      const Point& x = triangle_rule().points[q];
-      own += triangle_rule().weights[q] * map.determinant * quadratic_gradients(x).transpose() * inverse *
-             tau(t, x);
-    }
+    for (int q = 0; q < TriangleRule::size; ++q)
+      own += triangle_rule().weights[q] * quadratic_gradients()[q].transpose() * stress.col(q);
     for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
   });
   return work;

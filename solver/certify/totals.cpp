@@ -42,10 +42,9 @@ double work_of_traction(const Discretization& problem, const AdmissibleDisplacem
 }  // namespace
 
 template <int D, typename Sums>
-void Totals::add(const Discretization& problem, const AdmissiblePair& pair, Sums sums, const Owners& owners,
-                 Progress& progress, const AdmissiblePair* second) {
+void Totals::add(const Discretization& problem, const LoadValues<D>& load, const AdmissiblePair& pair,
+                 Sums sums, const Owners& owners, Progress& progress, const AdmissiblePair* second) {
   LawField<D> law(problem.problem.material);
-  LoadValues<D> load(problem);
   const Oscillation<D> oscillation_on(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
@@ -70,10 +69,10 @@ void Totals::add(const Discretization& problem, const AdmissiblePair& pair, Sums
   all.energy -= work_of_traction(problem, pair.v, owners);
 }
 
-template void Totals::add<1>(const Discretization&, const AdmissiblePair&, MembraneSums, const Owners&,
-                             Progress&, const AdmissiblePair*);
-template void Totals::add<2>(const Discretization&, const AdmissiblePair&, ElasticSums, const Owners&,
-                             Progress&, const AdmissiblePair*);
+template void Totals::add<1>(const Discretization&, const LoadValues<1>&, const AdmissiblePair&, MembraneSums,
+                             const Owners&, Progress&, const AdmissiblePair*);
+template void Totals::add<2>(const Discretization&, const LoadValues<2>&, const AdmissiblePair&, ElasticSums,
+                             const Owners&, Progress&, const AdmissiblePair*);
 
 double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known) {
   double theta = known < 0 && s_square > 0 ? 1 : 0;

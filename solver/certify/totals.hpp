@@ -14,8 +14,8 @@ struct Totals {
   /// Adds the triangles that have owners. `sums` are those of the pair, and of the second one if there is
   /// one: MembraneSums or ElasticSums.
   template <int D, typename Sums>
-  void add(const Discretization& problem, const AdmissiblePair& pair, Sums sums, const Owners& owners,
-           Progress& progress, const AdmissiblePair* second = nullptr);
+  void add(const Discretization& problem, const LoadValues<D>& load, const AdmissiblePair& pair, Sums sums,
+           const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr);
 
   TriangleSums all;
   double contact = 0, oscillation_square = 0;
@@ -34,8 +34,8 @@ double least_over_the_way(double delta_square, double s_square, double s_delta, 
 ///
 ///     ‖e + δ‖² + ‖b‖²  ≤  P² − 2 <p*, g − u_n> − 2 <p, g − v_n> + ‖δ‖² + (e − b, δ) + (e + b, δ).
 ///
-/// The last product is at most ‖δ‖ R. But against a second pair (σ*₂, v₂) the error is known. With w = v − v₂,
-/// τ = σ* − σ*₂, which has the pressure π = p* − p₂*, and s = E ε(w) + τ it is, by parts,
+/// The last product is at most ‖δ‖ R. But against a second pair (σ*₂, v₂) the error is known. With w = v −
+/// v₂, τ = σ* − σ*₂, which has the pressure π = p* − p₂*, and s = E ε(w) + τ it is, by parts,
 ///
 ///     (e + b, s)  =  (σ* − E ε(v), E ε(w) − τ) + 2 <p* − p, w_n> + 2 <π, v_n − u_n> + 2 (f − Πf, w)
 ///                 ≤  K + 2 <p*, g − u_n> + 2 <p, g − v_n>,

@@ -26,15 +26,14 @@ struct TriangleSums {
   TriangleSums& operator+=(const TriangleSums& other);
 };
 
-/// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v is
-/// v_h. On a
-/// patch σ* has a change of its own besides, and there is a second pair.
+/// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v
+/// is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 class MembraneSums {
  public:
   MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
   explicit MembraneSums(const PatchPairs& pairs);
 
-  TriangleSums operator()(int t, LawField<1>& law, LoadValues<1>& load) const;
+  TriangleSums operator()(int t, LawField<1>& law, const LoadValues<1>& load) const;
 
  private:
   /// Where the integrals are evaluated, with what does not depend on the triangle.
@@ -66,7 +65,7 @@ class ElasticSums {
   ElasticSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
-  TriangleSums operator()(int t, LawField<2>& law, LoadValues<2>& load);
+  TriangleSums operator()(int t, LawField<2>& law, const LoadValues<2>& load);
 
  private:
   using Given = MacroValues<1>::Given;
@@ -80,7 +79,7 @@ class ElasticSums {
 
   using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
 
-  Given given_on(int t, const AffineMap& map, LoadValues<2>& load) const;
+  Given given_on(int t, const AffineMap& map, const LoadValues<2>& load) const;
   const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
   double work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,

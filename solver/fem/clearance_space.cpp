@@ -58,9 +58,7 @@ class Builder {
 
  private:
   Vector direction_on(int part, const Contact& contact, int edge) const {
-    const Vector normal = mesh_.outward_normal(edge);
-    if (contact.direction.isZero(0)) return normal;
-    const Vector direction = contact.direction.stableNormalized();
+    const Vector normal = mesh_.outward_normal(edge), direction = contact.unit_direction(normal);
     constexpr double rounding = 1e-9;
     if (!(direction.dot(normal) > rounding)) {
       const Point middle = (mesh_.points[mesh_.edges[edge][0]] + mesh_.points[mesh_.edges[edge][1]]) / 2;
@@ -76,12 +74,14 @@ class Builder {
     const auto [a, b] = mesh_.edges[edge];
     const Point from = mesh_.points[a], to = mesh_.points[b];
     const Vector normal = mesh_.outward_normal(edge);
-    const LocalVector projection = project_onto_edge(
-        order_, edge_moments(order_, [&](double s) { return condition.gap(from + s * (to - from), normal); }));
+    const LocalVector projection = project_onto_edge(order_, edge_moments(order_, [&](double s) {
+                                                       return condition.gap(from + s * (to - from), normal);
+                                                     }));
     ContactEdge contact{edge, {}, {}, direction_on(part, condition, edge)};
     for (int j = 0; j <= order_; ++j) {
-      contact.rows[j] = order_ == 0 ? new_row({part, (from + to) / 2, projection[0]})
-                                    : row_of_node(part, j == 0 ? a : b, condition.gap, normal, contact.direction);
+      contact.rows[j] = order_ == 0
+                            ? new_row({part, (from + to) / 2, projection[0]})
+                            : row_of_node(part, j == 0 ? a : b, condition.gap, normal, contact.direction);
       contact.gap[j] = projection[j];
       space_.rows[contact.rows[j]].weight += mesh_.length(edge) / (order_ + 1);
     }
@@ -108,7 +108,8 @@ class Builder {
   /// u_n at a node that another part holds: on Γ_D, or between rollers that run on in the same direction.
   std::optional<double> held_displacement(int node, const Vector& direction) const {
     const auto fixed = held_.fixed.find(node);
-    if (fixed != held_.fixed.end()) return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
+    if (fixed != held_.fixed.end())
+      return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
     const auto [begin, end] = held_.rollers.equal_range(node);
     for (auto roller = begin; roller != end; ++roller)
       if (roller->second.dot(direction) > 1 - 1e-9) return 0;

@@ -38,6 +38,11 @@ struct Pressure {
 struct Contact {
   Field gap;
   Vector direction = Vector::Zero();  ///< zero stands for the normal
+
+  /// d/|d| where the boundary has this outward normal.
+  Vector unit_direction(const Vector& normal) const {
+    return direction.isZero(0) ? normal : Vector(direction.stableNormalized());
+  }
 };
 
 using Condition = std::variant<Fixed, Roller, Traction, Pressure, Contact>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
@@ -46,6 +47,38 @@ double clearance_error(const ContactPart& part, const Clearance& exact) {
   for (std::size_t i = 0; i < part.points.size(); ++i)
     sum += part.weight[i] * std::pow(part.clearance[i] - exact(part.points[i]), 2);
   return std::sqrt(sum);
+}
+
+/// The clearance of a contact part where an edge from a to a + way consists of some of its edges, by
+/// s ∈ [0, 1]; else less than two values.
+inline std::map<double, double> clearance_along(const ContactPart& part, const Point& a, const Vector& way) {
+  std::map<double, double> values;
+  for (std::size_t i = 0; i < part.points.size(); ++i) {
+    const double s = (part.points[i] - a).dot(way) / way.squaredNorm(), rounding = 1e-9;
+    const bool lies_there = (a + s * way - part.points[i]).norm() < rounding * way.norm();
+    if (lies_there && s > -rounding && s < 1 + rounding) values[s] = part.clearance[i];
+  }
+  return values;
+}
+
+/// 2 <p*, g − u_n> with p* of the coarse solution and the clearance of the conforming one on a finer mesh.
+inline double contact_term(const Solution& coarse, const Solution& fine) {
+  double sum = 0;
+  for (const EdgePressure& pressure : coarse.admissible_pressure) {
+    const auto& [first, second] = coarse.mesh.edges[pressure.edge];
+    const Point a = coarse.mesh.points[first];
+    const Vector way = coarse.mesh.points[second] - a;
+    for (const ContactPart& part : fine.contact) {
+      const std::map<double, double> clearance = clearance_along(part, a, way);
+      for (auto end = clearance.begin(), begin = end; end != clearance.end(); begin = end++)
+        for (int q = 0; q < EdgeRule::size; ++q) {
+          const double share = edge_rule().points[q], step = end->first - begin->first;
+          sum += 2 * edge_rule().weights[q] * step * way.norm() * pressure(begin->first + share * step) *
+                 (begin->second + share * (end->second - begin->second));
+        }
+    }
+  }
+  return sum;
 }
 
 /// The slope of log(error) over log(h) by least squares, for meshes that halve h each time.

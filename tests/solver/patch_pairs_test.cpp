@@ -177,8 +177,8 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
                                          std::get<Rectangle>(problem.domain), divisions, Pattern::right)));
     for (const auto& pairs : pairs_of(whole)) {
       Totals totals(whole.discretization().triangles());
-      totals.add<1>(pairs->problem(), pairs->first(), MembraneSums(*pairs), pairs->patch().parents,
-                    whole.progress(), &pairs->second());
+      totals.add<1>(pairs->problem(), {pairs->problem(), whole.progress()}, pairs->first(),
+                    MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
       const Sums sums = sums_of(*pairs);
       // Lifts are integrated by a quadrature.
       EXPECT_NEAR(totals.all.known, sums.known, 1e-5 * sums.span);
@@ -252,8 +252,8 @@ TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
   expect_to_fit(whole, all);
   for (const auto& pairs : all) {
     Totals totals(whole.discretization().triangles());
-    totals.add<1>(pairs->problem(), pairs->first(), MembraneSums(*pairs), pairs->patch().parents,
-                  whole.progress(), &pairs->second());
+    totals.add<1>(pairs->problem(), {pairs->problem(), whole.progress()}, pairs->first(),
+                  MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
     const TriangleSums& sums = totals.all;
     EXPECT_LT(sums.correction - 2 * sums.along + sums.span, 0.03 * sums.correction);
   }
@@ -295,10 +295,14 @@ TEST(Relaxation, TendsToTheLeastEnergyWhereTheModulusVaries) {
   const Eigen::VectorXd work = work_of_loads(discretization);
   relax(discretization, stiffness_of, v, work, 500, progress);
   LawField<1> law(problem.material);
-  const Eigen::VectorXd reaction = work_of_stress(discretization, [&](int t, const Point& x) -> Vector {
+  const Eigen::VectorXd reaction = work_of_stress(discretization, [&](int t) {
     const AffineMap map(mesh.corners(t));
-    return law(map(x)).stiffness *
-           gradient<1>(map.jacobian.inverse(), v.on(mesh, t) * quadratic_gradients(x).transpose());
+    StressAtPoints stress;
+    for (int q = 0; q < TriangleRule::size; ++q)
+      stress.col(q) =
+          law(map(triangle_rule().points[q])).stiffness *
+          gradient<1>(map.jacobian.inverse(), v.on(mesh, t) * quadratic_gradients()[q].transpose());
+    return stress;
   });
   ASSERT_GT(work.norm(), 0.1);
   const Eigen::Index points = v.points.size();
