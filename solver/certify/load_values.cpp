@@ -7,17 +7,18 @@
 namespace signorini {
 namespace {
 
-/// For a row of values at the points of a rule, the matrices that give the values of its projections: onto P1
-/// at the corners, onto P2 at the nodes, and what either leaves at the points, times the roots of the
+constexpr int kPoints = FineTriangleRule::size;
+
+/// For a row of values at the points of the fine rule, the matrices that give the values of its projections:
+/// onto P1 at the corners, onto P2 at the nodes, and what either leaves at the points, times the roots of the
 /// weights.
-template <typename Rule>
 struct Projections {
-  static constexpr int kPoints = Rule::size;
   using Square = Eigen::Matrix<double, kPoints, kPoints>;
   template <int Functions>
   using Onto = Eigen::Matrix<double, kPoints, Functions>;
 
-  explicit Projections(const Rule& rule) {
+  Projections() {
+    const FineTriangleRule& rule = fine_triangle_rule();
     Onto<3> hats;
     Onto<6> quadratics;
     Eigen::Matrix<double, kPoints, 1> weights;
@@ -42,23 +43,17 @@ struct Projections {
   Square rest_of_linear, rest_of_quadratic;
 };
 
-const Projections<TriangleRule>& projections() {
-  static const Projections all(triangle_rule());
+const Projections& projections() {
+  static const Projections all;
   return all;
 }
 
-const Projections<FineTriangleRule>& fine_projections() {
-  static const Projections all(fine_triangle_rule());
-  return all;
-}
-
-/// Column q: f at point q of the rule.
-template <int D, typename Rule>
-Eigen::Matrix<double, D, Rule::size> at_points(const VectorField& body, const AffineMap& map,
-                                               const Rule& rule) {
-  Eigen::Matrix<double, D, Rule::size> f;
-  for (int q = 0; q < Rule::size; ++q) {
-    const Point x = map(rule.points[q]);
+/// Column q: f at point q of the fine rule.
+template <int D>
+Eigen::Matrix<double, D, kPoints> at_points(const VectorField& body, const AffineMap& map) {
+  Eigen::Matrix<double, D, kPoints> f;
+  for (int q = 0; q < kPoints; ++q) {
+    const Point x = map(fine_triangle_rule().points[q]);
     for (int c = 0; c < D; ++c) f(c, q) = body(c, x);
   }
   return f;
@@ -92,18 +87,15 @@ template <int D>
 typename LoadValues<D>::Projection LoadValues<D>::project(int t) const {
   Projection projection{at_nodes<D>(discrete_load<D>(problem_, t)), 0};
   if (!problem_.load_varies) return projection;
-  const VectorField& body = problem_.problem.body;
   const AffineMap map(problem_.mesh.corners(t));
-  const auto f = at_points<D>(body, map, triangle_rule());
-  if (problem_.spaces().order == 0)
-    projection.balanced = at_nodes<D>(Eigen::Matrix<double, D, 3>(f.lazyProduct(projections().linear)));
+  const auto f = at_points<D>(problem_.problem.body, map);
+  const Projections& onto = projections();
+  const Quadratic<D> linear = at_nodes<D>(f.lazyProduct(onto.linear));
+  if (problem_.spaces().order == 0) projection.balanced = linear;
   constexpr double rounding = 1e-14;
-  if (f.lazyProduct(projections().rest_of_linear).norm() <= rounding * f.norm()) return projection;
-  const auto fine = at_points<D>(body, map, fine_triangle_rule());
-  const auto& onto = fine_projections();
-  projection.balanced += fine.lazyProduct(onto.quadratic) -
-                         at_nodes<D>(Eigen::Matrix<double, D, 3>(fine.lazyProduct(onto.linear)));
-  projection.rest = std::sqrt(map.determinant) * fine.lazyProduct(onto.rest_of_quadratic).norm();
+  if (f.lazyProduct(onto.rest_of_linear).norm() <= rounding * f.norm()) return projection;
+  projection.balanced += f.lazyProduct(onto.quadratic) - linear;
+  projection.rest = std::sqrt(map.determinant) * f.lazyProduct(onto.rest_of_quadratic).norm();
   return projection;
 }
 

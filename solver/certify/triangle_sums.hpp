@@ -83,7 +83,7 @@ class ElasticSums {
   const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
   double work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
-                      const Inner& inner) const;
+                      const Inner& inner, const LoadValues<2>& load) const;
 
   const Discretization& problem_;
   const Solution& solution_;
