@@ -121,7 +121,8 @@ class Objective {
 }  // namespace
 
 std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, const AdmissibleDisplacement& v,
-                                               const Eigen::VectorXd& clearance, int i,
+                                               const Eigen::VectorXd& clearance,
+                                               const ContactPressure& pressure, int i,
                                                std::array<LinearForm, 2> changes) {
   const ContactEdge& contact = problem.clearance.edges[i];
   Eigen::Vector2d rooms = Eigen::Vector2d::Zero();
@@ -131,8 +132,9 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, co
              Eigen::Vector2d(1 - s, s);
   }
   const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;
-  return {MovingPressure{i, 0, std::move(changes[0]), rooms[0], open},
-          MovingPressure{i, 1, std::move(changes[1]), rooms[1], open}};
+  const auto& [first, second] = pressure.at_ends[i];
+  return {MovingPressure{i, 0, first, std::move(changes[0]), rooms[0], open},
+          MovingPressure{i, 1, second, std::move(changes[1]), rooms[1], open}};
 }
 
 Sparse null_space(int unknowns, const std::vector<LinearForm>& rows) {
@@ -142,8 +144,7 @@ Sparse null_space(int unknowns, const std::vector<LinearForm>& rows) {
 }
 
 Eigen::VectorXd admissible_minimum(const Sparse& curvature, Eigen::VectorXd slope,
-                                   std::vector<MovingPressure> moving, ContactPressure& pressure,
-                                   Progress& progress) {
+                                   std::vector<MovingPressure> moving, Progress& progress) {
   // The unknowns may have units of their own.
   const Eigen::VectorXd scale = curvature.diagonal().cwiseSqrt().cwiseInverse();
   std::vector<LinearForm> kept;
@@ -156,27 +157,34 @@ Eigen::VectorXd admissible_minimum(const Sparse& curvature, Eigen::VectorXd slop
   }
   Objective objective(scale.asDiagonal() * curvature * scale.asDiagonal(), scale.cwiseProduct(slope), kept);
   if (!objective.is_regular()) return Eigen::VectorXd::Zero(slope.size());
-  const auto at = [&](const MovingPressure& own) -> double& { return pressure.at_ends[own.edge][own.end]; };
   Eigen::VectorXd y = objective.start();
   for (int step = 0; step < kSteps; ++step) {
     progress.check();
     const Eigen::VectorXd change = objective.lowest_from(y) - y, x = objective.unknowns(change);
     double way = 1;
     for (const MovingPressure& own : moving)
-      if (const double towards = value(own.change, x); !own.is_kept && at(own) + way * towards < 0)
-        way = at(own) / -towards;
+      if (const double towards = value(own.change, x); !own.is_kept && own.value + way * towards < 0)
+        way = own.value / -towards;
     y += way * change;
     for (MovingPressure& own : moving) {
       if (own.is_kept) continue;
       const double towards = value(own.change, x);
-      own.is_kept = way < 1 && at(own) + (way + kTogether) * towards <= 0;
+      own.is_kept = way < 1 && own.value + (way + kTogether) * towards <= 0;
       if (own.is_kept) objective.keep(own.change);
-      at(own) = std::max(0., at(own) + way * towards);
-      pressure.changes[own.edge][own.end] += way * towards;
+      own.value = std::max(0., own.value + way * towards);
     }
     if (way == 1) break;
   }
   return scale.cwiseProduct(objective.unknowns(y));
+}
+
+void move(const std::vector<MovingPressure>& moving, const Eigen::VectorXd& x, ContactPressure& pressure) {
+  for (const MovingPressure& own : moving) {
+    if (own.is_kept) continue;
+    const double change = value(own.change, x);
+    pressure.at_ends[own.edge][own.end] = std::max(0., own.value + change);
+    pressure.changes[own.edge][own.end] += change;
+  }
 }
 
 }  // namespace signorini

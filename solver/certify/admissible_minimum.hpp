@@ -18,6 +18,7 @@ using LinearForm = std::vector<std::pair<int, double>>;
 /// p* at one end of an edge of the clearance space, which changes with the unknowns.
 struct MovingPressure {
   int edge, end;
+  double value;
   LinearForm change;
   double room;   ///< (g − v_n, φ) with the hat φ of this end
   bool is_kept;  ///< it stays what it is
@@ -27,7 +28,8 @@ struct MovingPressure {
 ///
 /// `clearance`: a value a row of the clearance space.
 std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, const AdmissibleDisplacement& v,
-                                               const Eigen::VectorXd& clearance, int i,
+                                               const Eigen::VectorXd& clearance,
+                                               const ContactPressure& pressure, int i,
                                                std::array<LinearForm, 2> changes);
 
 /// The sparse columns whose combinations are all x with row·x = 0 for each of the rows. Dependent rows are
@@ -35,11 +37,12 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, co
 Eigen::SparseMatrix<double> null_space(int unknowns, const std::vector<LinearForm>& rows);
 
 /// The x that minimises ½ x·curvature x + slope·x + <p*, g − v_n> as far as p* ≥ 0 allows, where p* starts
-/// with what `pressure` has and is moved there. A primal active set: it goes towards the minimum until a
-/// pressure vanishes, keeps that, and goes on. p* ≥ 0 holds after every step, so that the last one may end
-/// anywhere.
+/// with its values. A primal active set: it goes towards the minimum until a pressure vanishes, keeps that,
+/// and goes on. p* ≥ 0 holds after every step, so that the last one may end anywhere.
 Eigen::VectorXd admissible_minimum(const Eigen::SparseMatrix<double>& curvature, Eigen::VectorXd slope,
-                                   std::vector<MovingPressure> moving, ContactPressure& pressure,
-                                   Progress& progress);
+                                   std::vector<MovingPressure> moving, Progress& progress);
+
+/// Moves the pressures as the unknowns do.
+void move(const std::vector<MovingPressure>& moving, const Eigen::VectorXd& x, ContactPressure& pressure);
 
 }  // namespace signorini

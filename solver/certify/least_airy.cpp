@@ -56,10 +56,12 @@ class Minimization {
     for (const Side& side : sides_) {
       std::array<LinearForm, 2> changes = changes_of(side);
       if (changes[0].empty()) continue;
-      std::ranges::move(moving_pressures(problem_, v, clearance, side.number, std::move(changes)),
+      std::ranges::move(moving_pressures(problem_, v, clearance, pressure_, side.number, std::move(changes)),
                         std::back_inserter(moving));
     }
-    store(admissible_minimum(curvature_, slope_, std::move(moving), pressure_, progress));
+    const Eigen::VectorXd found = admissible_minimum(curvature_, slope_, moving, progress);
+    move(moving, found, pressure_);
+    store(found);
   }
 
  private:

@@ -78,12 +78,14 @@ void minimize_potential(const Discretization& problem, const AdmissibleDisplacem
   for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
     std::array<LinearForm, 2> changes = changes_of(problem, nodes, i);
     if (changes[0].empty()) continue;
-    std::ranges::move(moving_pressures(problem, v, clearance, i, std::move(changes)),
+    std::ranges::move(moving_pressures(problem, v, clearance, pressure, i, std::move(changes)),
                       std::back_inserter(moving));
   }
   const SquareOfCurl square(problem, nodes, d);
-  potential += admissible_minimum(square.curvature, square.slope + square.curvature * potential,
-                                  std::move(moving), pressure, progress);
+  const Eigen::VectorXd change =
+      admissible_minimum(square.curvature, square.slope + square.curvature * potential, moving, progress);
+  move(moving, change, pressure);
+  potential += change;
 
   const Mesh& mesh = problem.mesh;
   for (const int t : nodes.triangles())
