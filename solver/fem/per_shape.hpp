@@ -25,47 +25,43 @@ class PerShape {
   /// call.
   template <typename Make>
   Value& operator()(int triangle, const Make& make) {
-    const Digits digits = leading_digits(AffineMap(problem_.mesh.corners(triangle)).jacobian);
-    std::unique_ptr<Remembered>& found = remembered_[place(digits)];
-    const bool known = found && problem_.element.has_constant_material() && found->digits == digits;
+    const Eigen::Matrix2d jacobian = AffineMap(problem_.mesh.corners(triangle)).jacobian;
+    std::unique_ptr<Remembered>& found = remembered_[place(jacobian)];
+    const bool known =
+        found && problem_.element.has_constant_material() && is_same(found->jacobian, jacobian);
     if (!known) {
       if constexpr (std::invocable<Make>)
-        found.reset(new Remembered{digits, make()});
+        found.reset(new Remembered{jacobian, make()});
       else
-        found.reset(new Remembered{digits, make(problem_.element.matrices(problem_.mesh, triangle))});
+        found.reset(new Remembered{jacobian, make(problem_.element.matrices(problem_.mesh, triangle))});
     }
     return found->value;
   }
 
  private:
-  /// The exponent of the largest entry of a Jacobian, and the entries in units of 2^-42 of that power of two:
-  /// what a difference of coordinates is exact to on a few thousand divisions.
-  struct Digits {
-    int exponent;
-    std::array<std::int64_t, 4> entries;
-
-    bool operator==(const Digits&) const = default;
-  };
-
   struct Remembered {
-    Digits digits;
+    Eigen::Matrix2d jacobian;
     Value value;
   };
   static constexpr int kBits = 6;
+  /// What a difference of coordinates is exact to on a few thousand divisions.
+  static constexpr double kRounding = 1e-12;
 
-  static Digits leading_digits(const Eigen::Matrix2d& jacobian) {
-    constexpr int digits = 42;
-    Digits leading{std::ilogb(jacobian.cwiseAbs().maxCoeff()), {}};
-    const double scale = std::scalbn(1., digits - leading.exponent);
-    for (int i = 0; i < 4; ++i) leading.entries[i] = std::llrint(scale * jacobian(i));
-    return leading;
+  /// Along x and y by themselves: a triangle may be much longer than high.
+  static bool is_same(const Eigen::Matrix2d& one, const Eigen::Matrix2d& other) {
+    const auto sizes = [](const Eigen::Matrix2d& jacobian) -> Eigen::Array2d {
+      return jacobian.cwiseAbs().rowwise().maxCoeff();
+    };
+    return (sizes(one - other) <= kRounding * sizes(one)).all();
   }
 
-  /// Mixes the bits of the numbers (Knuth's multiplicative hashing).
-  static std::size_t place(const Digits& digits) {
+  /// Mixes the leading digits of the numbers (Knuth's multiplicative hashing).
+  static std::size_t place(const Eigen::Matrix2d& jacobian) {
+    constexpr int digits = 24;
+    const double scale = std::scalbn(1., digits - std::ilogb(jacobian.cwiseAbs().maxCoeff()));
     std::uint64_t mixed = 0;
-    for (const std::int64_t number : digits.entries)
-      mixed = (mixed ^ static_cast<std::uint64_t>(number)) * 0x9e3779b97f4a7c15u;
+    for (const double number : jacobian.reshaped())
+      mixed = (mixed ^ static_cast<std::uint64_t>(std::llrint(scale * number))) * 0x9e3779b97f4a7c15u;
     return mixed >> (64 - kBits);
   }
 

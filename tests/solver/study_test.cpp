@@ -5,6 +5,7 @@
 
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
+#include "true_errors.hpp"
 
 namespace signorini {
 namespace {
@@ -94,6 +95,47 @@ TEST(Study, PutsTheTrueErrorsBesideTheBound) {
               1e-3 * *last.errors.stress);
   EXPECT_NEAR(*last.errors.displacement, displacement_error(solution, problems::SignoriniEdge::u),
               1e-3 * *last.errors.displacement);
+}
+
+/// The contact term of the total error for a solution and a displacement that need not be the exact one.
+double contact_term(const Problem& problem, const Exact& exact, const Solution& solution) {
+  Observer indifferent;
+  const TrueErrors errors = true_errors(problem, exact, solution, indifferent);
+  return std::pow(*errors.total, 2) - std::pow(*errors.energy_norm, 2) -
+         2 * (solution.summary.error_bound->energy_upper - *exact.energy);
+}
+
+/// Where contact ends within an edge, p* is positive on its open part.
+TEST(Study, TheTotalErrorHasBothContactTerms) {
+  Problem problem = problems::SignoriniEdge::problem(Scheme::nonconforming, 1);
+  problem.mesh.fineness = Divisions{5, 3};
+  const Solution solution = solve(problem, active_set);
+  double expected = 0;
+  for (const EdgePressure& pressure : solution.admissible_pressure) {
+    const auto& [a, b] = solution.mesh.edges[pressure.edge];
+    const double from = solution.mesh.points[a].x(), to = solution.mesh.points[b].x();
+    constexpr int parts = 10'000;
+    for (int i = 0; i < parts; ++i) {
+      const double s = (i + 0.5) / parts, x = from + s * (to - from);
+      if (x > 0) expected += 2 * pressure(s) * std::pow(x, 1.5) * std::abs(to - from) / parts;
+    }
+  }
+  EXPECT_GT(expected, 0.001 * std::pow(solution.summary.error_bound->value, 2));
+  EXPECT_NEAR(contact_term(problem, exact_edge(), solution), expected, 0.02 * expected);
+}
+
+TEST(Study, TheContactTermOfAnElasticBodyIsTakenAlongTheDirection) {
+  Problem problem = problems::pressed_block(Scheme::conforming, Pattern::right, 0.3, 0.7);
+  problem.boundary["bottom"] = Contact{0.1, Vector(3, -4)};
+  problem.boundary["left"] = Fixed{};
+  const Solution solution = solve(problem, active_set);
+  const Exact exact{VectorField(-0.05, 0.1), {0, 0, 0}, solution.summary.error_bound->energy_lower};
+  double force = 0;
+  for (const EdgePressure& pressure : solution.admissible_pressure)
+    force += solution.mesh.length(pressure.edge) * pressure(0.5);
+  // g − u_d = 0.1 + (3 · 0.05 + 4 · 0.1) / 5.
+  EXPECT_GT(force, 0.1);
+  EXPECT_NEAR(contact_term(problem, exact, solution), 2 * force * 0.21, 1e-9 * force);
 }
 
 /// ½ E ε : ε by its two moduli.

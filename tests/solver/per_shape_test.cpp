@@ -1,0 +1,33 @@
+#include "fem/per_shape.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mesh/rectangle.hpp"
+#include "problems/membrane.hpp"
+
+namespace signorini {
+namespace {
+
+/// How many values are made for the triangles of a mesh.
+int shapes_of(const Mesh& mesh) {
+  const Problem problem = problems::paper(Scheme::nonconforming, 1);
+  const Discretization discretization(problem, mesh);
+  PerShape<int> shapes(discretization);
+  int made = 0;
+  for (int t = 0; t < discretization.triangles(); ++t) shapes(t, [&] { return made++; });
+  return made;
+}
+
+/// i/48 of a length is rounded otherwise for each i.
+TEST(PerShape, TellsShapesApartButForRounding) {
+  const Rectangle domain{{0.1, 0}, {1.7, 0.3}};
+  Mesh mesh = rectangle_mesh(domain, {48, 48}, Pattern::crossed);
+  EXPECT_LE(shapes_of(mesh), 8);
+  const int before = shapes_of(mesh);
+  // A point inside has four triangles in its own square.
+  mesh.points.back() += Vector(1e-9 * 1.7 / 48, 0);
+  EXPECT_EQ(shapes_of(mesh), before + 4);
+}
+
+}  // namespace
+}  // namespace signorini
