@@ -27,9 +27,9 @@ double value(const LinearForm& form, const Eigen::VectorXd& x) {
 }
 
 /// Unknowns as combinations of those that are left free.
-class Elimination {
+class FreeUnknowns {
  public:
-  void add(const LinearForm& row) {
+  void take_away(const LinearForm& row) {
     Combination rest;
     double largest = 0;
     for (const auto& [unknown, factor] : row) {
@@ -54,7 +54,8 @@ class Elimination {
     known_.emplace(unknown, std::move(rest));
   }
 
-  Sparse free_changes(int unknowns) const {
+  /// By columns, what a free unknown changes.
+  Sparse basis(int unknowns) const {
     std::vector<int> column(unknowns);
     int columns = 0;
     for (int i = 0; i < unknowns; ++i) column[i] = known_.contains(i) ? -1 : columns++;
@@ -78,7 +79,7 @@ class Elimination {
   std::map<int, Combination> known_;
 };
 
-/// ½ y·H y + slope·y over the free changes y, with pressures added that must not change.
+/// ½ y·H y + slope·y over the free unknowns y, with pressures added that must not change.
 class Objective {
  public:
   Objective(const Sparse& curvature, const Eigen::VectorXd& slope, const std::vector<LinearForm>& kept)
@@ -138,24 +139,27 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, co
 }
 
 Sparse null_space(int unknowns, const std::vector<LinearForm>& rows) {
-  Elimination elimination;
-  for (const LinearForm& row : rows) elimination.add(row);
-  return elimination.free_changes(unknowns);
+  FreeUnknowns free;
+  for (const LinearForm& row : rows) free.take_away(row);
+  return free.basis(unknowns);
 }
 
 Eigen::VectorXd admissible_minimum(const Sparse& curvature, Eigen::VectorXd slope,
-                                   std::vector<MovingPressure> moving, Progress& progress) {
+                                   std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
+                                   Progress& progress) {
   // The unknowns may have units of their own.
   const Eigen::VectorXd scale = curvature.diagonal().cwiseSqrt().cwiseInverse();
-  std::vector<LinearForm> kept;
+  const auto to_scale = [&](LinearForm& form) {
+    for (auto& [unknown, factor] : form) factor *= scale[unknown];
+  };
+  for (LinearForm& condition : conditions) to_scale(condition);
   for (MovingPressure& own : moving) {
-    for (auto& [unknown, factor] : own.change) {
-      slope[unknown] += own.room * factor;
-      factor *= scale[unknown];
-    }
-    if (own.is_kept) kept.push_back(own.change);
+    for (const auto& [unknown, factor] : own.change) slope[unknown] += own.room * factor;
+    to_scale(own.change);
+    if (own.is_kept) conditions.push_back(own.change);
   }
-  Objective objective(scale.asDiagonal() * curvature * scale.asDiagonal(), scale.cwiseProduct(slope), kept);
+  Objective objective(scale.asDiagonal() * curvature * scale.asDiagonal(), scale.cwiseProduct(slope),
+                      conditions);
   if (!objective.is_regular()) return Eigen::VectorXd::Zero(slope.size());
   Eigen::VectorXd y = objective.start();
   for (int step = 0; step < kSteps; ++step) {

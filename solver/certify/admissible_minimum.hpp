@@ -36,11 +36,13 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, co
 /// no harm.
 Eigen::SparseMatrix<double> null_space(int unknowns, const std::vector<LinearForm>& rows);
 
-/// The x that minimises ½ x·curvature x + slope·x + <p*, g − v_n> as far as p* ≥ 0 allows, where p* starts
-/// with its values. A primal active set: it goes towards the minimum until a pressure vanishes, keeps that,
-/// and goes on. p* ≥ 0 holds after every step, so that the last one may end anywhere.
+/// The x that minimises ½ x·curvature x + slope·x + <p*, g − v_n> with row·x = 0 for the conditions, as far
+/// as p* ≥ 0 allows, where p* starts with its values. A primal active set: it goes towards the minimum until
+/// a pressure vanishes, keeps that, and goes on. p* ≥ 0 holds after every step, so that the last one may end
+/// anywhere.
 Eigen::VectorXd admissible_minimum(const Eigen::SparseMatrix<double>& curvature, Eigen::VectorXd slope,
-                                   std::vector<MovingPressure> moving, Progress& progress);
+                                   std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
+                                   Progress& progress);
 
 /// Moves the pressures as the unknowns do.
 void move(const std::vector<MovingPressure>& moving, const Eigen::VectorXd& x, ContactPressure& pressure);

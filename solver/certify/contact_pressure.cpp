@@ -9,14 +9,8 @@
 namespace signorini {
 namespace {
 
-/// Below this part of the forces of a chain a difference is rounding.
+/// Below this part of the forces a difference is rounding.
 constexpr double kRounding = 1e-12;
-
-double sum_of_forces(const Chain& chain) {
-  double sum = 0;
-  for (const Link& link : chain) sum += std::abs(link.forces[0]) + std::abs(link.forces[1]);
-  return sum;
-}
 
 /// Ψ at the nodes of a chain, in the direction in which it runs, and its mean over each link.
 struct Potential {
@@ -53,18 +47,20 @@ double value_or_zero(const std::unordered_map<int, double>& values, int key) {
 ContactPressure::ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
                                  const Eigen::VectorXd& clearance)
     : at_ends(problem.clearance.edges.size()), changes(at_ends.size()) {
+  // Fluxes are forces: what an open chain has is rounding beside them.
+  const double largest_flux = stress.cwiseAbs().maxCoeff();
   for (const Chain& given : pressure_chains(problem, stress)) {
+    const double scale = kRounding * (sum_of_forces(given) + largest_flux);
     const AdmissibleChain chain = admissible(problem, given, clearance);
     keep(problem, given, chain.links());
+    if (problem.spaces().components == 2) {
+      add_airy(problem, given, chain, scale);
+      continue;
+    }
     const Potential potential(given, chain);
-    const double scale = kRounding * sum_of_forces(given);
     const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
     if (free_ends && std::abs(potential.at_nodes.back()) > 100 * scale) refuse(problem, given, "pulls");
-    if (potential.largest() <= scale) continue;
-    if (problem.spaces().components == 1)
-      add_curl(problem, chain.links(), potential.at_nodes, potential.means);
-    else
-      add_airy(problem, chain, potential.at_nodes, potential.means);
+    if (potential.largest() > scale) add_curl(problem, chain.links(), potential.at_nodes, potential.means);
   }
 }
 
@@ -82,7 +78,7 @@ void ContactPressure::refuse(const Discretization& problem, const Chain& chain, 
   unmet.push_back("the contact near " + to_string(problem.mesh.points[chain[0].begin]) + " " + what);
 }
 
-/// Of an elastic body the moment must stay, too. An edge between closed and open is left without pressure
+/// Of an elastic body force and moment must stay. An edge between closed and open is left without pressure
 /// then, because its share would act with a moment, unless the contact is too short to balance it otherwise.
 AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
                                             const Eigen::VectorXd& clearance) {
@@ -90,14 +86,8 @@ AdmissibleChain ContactPressure::admissible(const Discretization& problem, const
   AdmissibleChain loaded(problem, given, clearance, Transition::loaded);
   if (problem.spaces().components == 1) return loaded;
   AdmissibleChain free(problem, given, clearance, Transition::free);
-  if (free.is_held(false) || free.is_held(true)) return free;
-  // The arms are lengths along the chain about its middle.
-  std::vector<double> arms{0};
-  for (const Link& link : given) arms.push_back(arms.back() + link.length);
-  const double middle = arms.back() / 2;
-  for (double& arm : arms) arm = arm / middle - 1;
-  if (free.balance(given, arms)) return free;
-  if (!loaded.balance(given, arms)) refuse(problem, given, "pulls");
+  if (free.is_held(false) || free.is_held(true) || free.balance(given)) return free;
+  if (!loaded.balance(given)) refuse(problem, given, "pulls");
   return loaded;
 }
 
@@ -127,35 +117,54 @@ void ContactPressure::add_curl(const Discretization& problem, const Chain& chain
   }
 }
 
-/// Along the chain ψ' = −Ψ d·n and ∂_n ψ = Ψ d·t, with the direction d of the contact.
-void ContactPressure::add_airy(const Discretization& problem, const AdmissibleChain& chain,
-                               const std::vector<double>& at_nodes, const std::vector<double>& means) {
+/// With w = (∂_y ψ, −∂_x ψ), whose derivative along Γ_C is the change −(p* − p_h) d of the traction, and
+/// ψ' = w·n.
+void ContactPressure::add_airy(const Discretization& problem, const Chain& given,
+                               const AdmissibleChain& chain, double scale) {
+  const Mesh& mesh = problem.mesh;
   const Chain& links = chain.links();
-  const auto edge_of = [&](std::size_t i) { return problem.clearance.edges[links[i].number].edge; };
-  const Vector direction = problem.clearance.edges[links[0].number].direction;
-  for (const Link& link : links)
-    if (problem.clearance.edges[link.number].direction.dot(direction) < 1 - 1e-12)
-      return refuse(
-          problem, links,
-          "bends: its pressure cannot be made admissible; give it a direction, or use active_set and "
-          "the nonconforming scheme");
-  // With the domain on the left: the sign of both Ψ and of the way.
-  const double sign = domain_on_the_left(problem.mesh, edge_of(0))[0] == links[0].begin ? 1 : -1;
+  const std::size_t count = links.size();
+  // The domain lies on the left of the chain, or on its right.
+  const int first_edge = problem.clearance.edges[links[0].number].edge;
+  const double sign = domain_on_the_left(mesh, first_edge)[0] == links[0].begin ? 1 : -1;
+
+  std::vector<Vector> w{Vector::Zero()}, means;
+  double largest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector d = sign * problem.clearance.edges[links[i].number].direction;
+    const double change = links[i].force() - given[i].force(),
+                 first_half = links[i].forces[0] - given[i].forces[0];
+    largest = std::max({largest, std::abs(change), std::abs(first_half)});
+    means.push_back(w.back() - first_half * d);
+    w.push_back(w.back() - change * d);
+  }
+  if (largest <= scale) return;
+  if (chain.is_held(false)) {
+    // It vanishes where the chain ends freely, and where nothing was moved.
+    const Vector d = sign * problem.clearance.edges[links[0].number].direction,
+                 begin = chain.is_held(true) ? Vector(chain.force_of_support() * d) : Vector(-w.back());
+    for (Vector& own : w) own += begin;
+    for (Vector& own : means) own += begin;
+  }
   std::vector<double> psi{0};
-  for (std::size_t i = 0; i < links.size(); ++i)
-    psi.push_back(psi.back() -
-                  means[i] * links[i].length * direction.dot(problem.mesh.outward_normal(edge_of(i))));
+  double length = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector n = mesh.outward_normal(problem.clearance.edges[links[i].number].edge);
+    psi.push_back(psi.back() + sign * links[i].length * n.dot(means[i]));
+    length += links[i].length;
+  }
   if (chain.is_held(false)) {
     const double rest = psi.back();
     for (double& value : psi) value -= rest;
   }
-  // w = (∂_y ψ, −∂_x ψ) = −Ψ d.
+  const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
+  if (free_ends && (w.back().norm() > 100 * scale || std::abs(psi.back()) > 100 * scale * length))
+    refuse(problem, given, "pulls");
   const auto set = [&](int point, std::size_t i) {
-    const Vector w = -sign * at_nodes[i] * direction;
-    airy_at_points[point] = {psi[i], Vector(-w.y(), w.x())};
+    airy_at_points[point] = {psi[i], Vector(-w[i].y(), w[i].x())};
   };
   set(links[0].begin, 0);
-  for (std::size_t i = 0; i < links.size(); ++i) set(links[i].end, i + 1);
+  for (std::size_t i = 0; i < count; ++i) set(links[i].end, i + 1);
 }
 
 }  // namespace signorini

@@ -15,8 +15,7 @@ namespace signorini {
 ///
 /// p* − p_h is the derivative along Γ_C of a potential Ψ that vanishes where Γ_C ends (but not where Γ_D
 /// begins, whose traction is free), so that a stress without divergence makes the change: for a membrane the
-/// curl of Ψ; for an elastic body, whose moments must balance too, the Airy stress of a function ψ with
-/// ψ' = −Ψ along Γ_C.
+/// curl of Ψ; for an elastic body, whose moments must balance too, the Airy stress of a function ψ.
 struct ContactPressure {
   /// ψ and ∇ψ at a point.
   struct Airy {
@@ -47,8 +46,8 @@ struct ContactPressure {
   void keep(const Discretization& problem, const Chain& given, const Chain& admissible);
   void add_curl(const Discretization& problem, const Chain& chain, const std::vector<double>& at_nodes,
                 const std::vector<double>& means);
-  void add_airy(const Discretization& problem, const AdmissibleChain& chain,
-                const std::vector<double>& at_nodes, const std::vector<double>& means);
+  void add_airy(const Discretization& problem, const Chain& given, const AdmissibleChain& chain,
+                double scale);
   void refuse(const Discretization& problem, const Chain& chain, const std::string& what);
 };
 

@@ -1,6 +1,7 @@
 #include "certify/least_airy.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "certify/admissible_minimum.hpp"
 #include "certify/layers.hpp"
@@ -17,7 +18,7 @@ constexpr int kLayers = 6;
 /// Slopes of ψ below this part of the largest are left to their surroundings.
 constexpr double kHardly = 1e-3;
 
-/// A point with its unknowns: (ψ, ∇ψ), or on Γ_C (ψ, b) with ∇ψ = b (d_y, −d_x).
+/// A point with its unknowns: (ψ, ∇ψ), or where the contact has a direction (ψ, b) with ∇ψ = b (d_y, −d_x).
 struct Place {
   int first = -1;
   Eigen::Matrix<double, 3, Eigen::Dynamic> values{3, 0};
@@ -30,6 +31,7 @@ struct Side {
   int number;  ///< in the clearance space
   int from, to;
   bool forward;                        ///< from is the edge's first point
+  bool has_direction;                  ///< other than its normal
   Eigen::Matrix<double, 2, 6> change;  ///< of p* at from and to, by (ψ, ∇ψ) there
 };
 
@@ -59,7 +61,8 @@ class Minimization {
       std::ranges::move(moving_pressures(problem_, v, clearance, pressure_, side.number, std::move(changes)),
                         std::back_inserter(moving));
     }
-    const Eigen::VectorXd found = admissible_minimum(curvature_, slope_, moving, progress);
+    const Eigen::VectorXd found =
+        admissible_minimum(curvature_, slope_, moving, without_friction(), progress);
     move(moving, found, pressure_);
     store(found);
   }
@@ -87,7 +90,9 @@ class Minimization {
     mean /= length * across;
     at_from << 0, d.y(), -d.x(), 0, 0, 0;
     at_to << 0, 0, 0, 0, d.y(), -d.x();
-    Side side{i, from, to, mesh_.edges[contact.edge][0] == from, {}};
+    const std::string& part = mesh_.boundary[problem_.clearance.rows[contact.rows[0]].part].name;
+    const bool has_direction = !condition_on<Contact>(problem_.problem, part)->direction.isZero(0);
+    Side side{i, from, to, mesh_.edges[contact.edge][0] == from, has_direction, {}};
     side.change << (6 * mean - 4 * at_from - 2 * at_to) / length,
         (-6 * mean + 2 * at_from + 4 * at_to) / length;
     side_of_edge_[contact.edge] = static_cast<int>(sides_.size());
@@ -110,17 +115,18 @@ class Minimization {
       for (const int edge : part.edges)
         for (const int point : mesh_.edges[edge]) held[point] = true;
     }
-    std::vector<Vector> directions(mesh_.points.size(), Vector::Zero());
+    // 0 stands for the normals.
+    std::vector<std::optional<Vector>> directions(mesh_.points.size());
     for (const Side& side : sides_)
       for (const int point : {side.from, side.to}) {
-        const Vector& d = problem_.clearance.edges[side.number].direction;
-        if (directions[point].isZero(0)) directions[point] = d;
-        if (directions[point].dot(d) < 1 - 1e-12) held[point] = true;
+        const Vector d = side.has_direction ? direction(side) : Vector(0, 0);
+        if (!directions[point]) directions[point] = d;
+        if ((*directions[point] - d).norm() > 1e-12) held[point] = true;
       }
     int unknowns = 0;
     for (std::size_t point = 0; point < places_.size(); ++point) {
       if (layers[point] >= kLayers || held[point]) continue;
-      const Vector& d = directions[point];
+      const Vector d = directions[point].value_or(Vector(0, 0));
       if (d.isZero(0)) {
         places_[point].values = Eigen::Matrix3d::Identity();
       } else {
@@ -142,8 +148,8 @@ class Minimization {
       const Vector way = mesh_.points[corners[to]] - mesh_.points[corners[from]];
       for (int k = 0; k < 6; ++k) {
         Eigen::Matrix2d ends;
-        if (side >= 0) {
-          const Vector& d = problem_.clearance.edges[sides_[side].number].direction;
+        if (side >= 0 && sides_[side].has_direction) {
+          const Vector& d = direction(sides_[side]);
           ends << -sides_[side].change(0, k) * d, -sides_[side].change(1, k) * d;
         } else {
           const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k % 3);
@@ -193,6 +199,25 @@ class Minimization {
     }
     curvature_.resize(slope_.size(), slope_.size());
     curvature_.setFromTriplets(entries.begin(), entries.end());
+  }
+
+  const Vector& direction(const Side& side) const { return problem_.clearance.edges[side.number].direction; }
+
+  /// The traction has no tangential part where ∂_n ψ is the same at both ends of a side. Along a direction
+  /// that the unknowns have it is so.
+  std::vector<LinearForm> without_friction() const {
+    std::vector<LinearForm> conditions;
+    for (const Side& side : sides_) {
+      if (side.has_direction) continue;
+      LinearForm condition;
+      for (const auto& [point, sign] : {std::pair(side.from, -1), {side.to, 1}}) {
+        const Place& place = places_[point];
+        const Eigen::RowVectorXd row = sign * direction(side).transpose() * place.values.bottomRows<2>();
+        for (int a = 0; a < place.size(); ++a) condition.emplace_back(place.first + a, row[a]);
+      }
+      if (!condition.empty()) conditions.push_back(condition);
+    }
+    return conditions;
   }
 
   /// Of p* at the edge's first and second point, by the unknowns.

@@ -13,8 +13,7 @@ namespace signorini {
 ///     ‖σ* − sym σ_h‖²_C + <p*, g − v_n>,   p* ≥ 0,
 ///
 /// over the ψ of the reduced element of Hsieh, Clough and Tocher in a few layers around the points where it
-/// does not vanish, with p* kept on open edges. A primal active set like that one. Nothing is done for
-/// contact that bends (ContactPressure::unmet).
+/// does not vanish, with p* kept on open edges. A primal active set like that one.
 ///
 /// `clearance`: a value a row of the clearance space.
 void minimize_airy(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,

@@ -83,7 +83,7 @@ void minimize_potential(const Discretization& problem, const AdmissibleDisplacem
   }
   const SquareOfCurl square(problem, nodes, d);
   const Eigen::VectorXd change =
-      admissible_minimum(square.curvature, square.slope + square.curvature * potential, moving, progress);
+      admissible_minimum(square.curvature, square.slope + square.curvature * potential, moving, {}, progress);
   move(moving, change, pressure);
   potential += change;
 

@@ -13,10 +13,10 @@ namespace signorini {
 ///
 ///     w = ρ d(s),   ρ = λ_a + λ_b,   s = λ_b / ρ.
 ///
-/// d is kept as its polynomial of degree 8 in the Chebyshev points.
+/// d is kept as its polynomial of degree 12 in the Chebyshev points.
 class Lift {
  public:
-  static constexpr int size = 9;
+  static constexpr int size = 13;
 
   /// d(s) for s ∈ [0, 1] with the given number of components; taken as 0 at both ends.
   Lift(int components, const std::function<Eigen::VectorXd(double s)>& d);

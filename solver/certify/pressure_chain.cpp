@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
+#include <Eigen/QR>
 
 namespace signorini {
 namespace {
@@ -61,18 +61,42 @@ class Chains {
   const Discretization& problem_;
 };
 
-double moment(const Chain& chain, const std::vector<double>& arms) {
-  double sum = 0;
-  for (std::size_t i = 0; i < chain.size(); ++i)
-    sum += chain[i].forces[0] * arms[i] + chain[i].forces[1] * arms[i + 1];
-  return sum;
-}
+/// The translations along x and y and the rotation about the middle of a chain, in units of its size.
+class Motions {
+ public:
+  Motions(const Discretization& problem, const Chain& chain)
+      : problem_(problem), middle_((at(chain.front().begin) + at(chain.back().end)) / 2) {
+    for (const Link& link : chain) size_ += link.length;
+  }
 
-double force(const Chain& chain) {
-  double sum = 0;
-  for (const Link& link : chain) sum += link.force();
-  return sum;
-}
+  /// What each of them is along the direction of contact where the link begins and where it ends.
+  std::array<Eigen::Vector3d, 2> along(const Link& link) const {
+    const Vector& d = problem_.clearance.edges[link.number].direction;
+    std::array<Eigen::Vector3d, 2> motions;
+    for (int end = 0; end < 2; ++end) {
+      const Vector r = (at(end == 0 ? link.begin : link.end) - middle_) / size_;
+      motions[end] = {d.x(), d.y(), d.y() * r.x() - d.x() * r.y()};
+    }
+    return motions;
+  }
+
+  /// The work on them of the forces of a chain: its force and its moment.
+  Eigen::Vector3d work(const Chain& chain) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Link& link : chain) {
+      const auto [begin, end] = along(link);
+      sum += link.forces[0] * begin + link.forces[1] * end;
+    }
+    return sum;
+  }
+
+ private:
+  const Point& at(int point) const { return problem_.mesh.points[point]; }
+
+  const Discretization& problem_;
+  Point middle_;
+  double size_ = 0;
+};
 
 /// The forces of the linear pressure with the given values at the ends.
 std::array<double, 2> forces_of(double begin, double end, double length) {
@@ -83,6 +107,12 @@ std::array<double, 2> forces_of(double begin, double end, double length) {
 
 std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress) {
   return Chains(problem, stress).all;
+}
+
+double sum_of_forces(const Chain& chain) {
+  double sum = 0;
+  for (const Link& link : chain) sum += std::abs(link.forces[0]) + std::abs(link.forces[1]);
+  return sum;
 }
 
 AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
@@ -155,30 +185,33 @@ void AdmissibleChain::spread(Link& link) const {
   link.forces = {at_begin, force - at_begin};
 }
 
-bool AdmissibleChain::balance(const Chain& given, const std::vector<double>& arms) {
-  Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
-  // Forces and moments of the pressure times 1 and times ξ, by its values at the ends of the edges.
-  const auto scaled = [&](std::size_t i, double begin, double end) {
-    const auto [p, q] = chain_[i].pressure();
+bool AdmissibleChain::balance(const Chain& given) {
+  const Motions motions(problem_, chain_);
+  // The forces of the pressure times the values at the ends of an edge.
+  const auto scaled = [&](const Link& link, double begin, double end) {
+    const auto [p, q] = link.pressure();
     if (problem_.spaces().order == 0) begin = end = (begin + end) / 2;
-    return forces_of(p * begin, q * end, chain_[i].length);
+    return forces_of(p * begin, q * end, link.length);
   };
-  for (std::size_t i = 0; i < chain_.size(); ++i) {
-    const std::array<double, 2> by_one = scaled(i, 1, 1), by_arm = scaled(i, arms[i], arms[i + 1]);
-    matrix(0, 0) += by_one[0] + by_one[1];
-    matrix(0, 1) += by_arm[0] + by_arm[1];
-    matrix(1, 0) += by_one[0] * arms[i] + by_one[1] * arms[i + 1];
-    matrix(1, 1) += by_arm[0] * arms[i] + by_arm[1] * arms[i + 1];
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  for (const Link& link : chain_) {
+    const auto [begin, end] = motions.along(link);
+    for (int k = 0; k < 3; ++k) {
+      const auto [first, second] = scaled(link, begin[k], end[k]);
+      matrix.col(k) += first * begin + second * end;
+    }
   }
-  const Eigen::Vector2d lack(force(given) - force(chain_), moment(given, arms) - moment(chain_, arms));
-  const Eigen::FullPivLU<Eigen::Matrix2d> lu(matrix);
-  if (!lu.isInvertible()) return lack.isZero(1e-12 * std::abs(force(given)));
-  const Eigen::Vector2d mu = lu.solve(lack);
-  bool pushes = true;
-  for (std::size_t i = 0; i < chain_.size(); ++i) {
-    const double begin = 1 + mu[0] + mu[1] * arms[i], end = 1 + mu[0] + mu[1] * arms[i + 1];
-    pushes = pushes && (chain_[i].force() == 0 || (begin >= 0 && end >= 0));
-    chain_[i].forces = scaled(i, begin, end);
+  // A motion along a straight chain does no work, and the rotation about the middle of an arc hardly any.
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposition;
+  decomposition.setThreshold(1e-13);
+  decomposition.compute(matrix);
+  const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_), mu = decomposition.solve(lack);
+  bool pushes = (matrix * mu - lack).norm() <= 1e-12 * sum_of_forces(given);
+  for (Link& link : chain_) {
+    const auto [at_begin, at_end] = motions.along(link);
+    const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);
+    pushes = pushes && (link.force() == 0 || (begin >= 0 && end >= 0));
+    link.forces = scaled(link, begin, end);
   }
   return pushes;
 }

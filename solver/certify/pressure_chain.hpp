@@ -25,6 +25,9 @@ using Chain = std::vector<Link>;
 /// All chains, with the forces of −σ_hn.
 std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress);
 
+/// Of their sizes: what a force of the chain is small beside.
+double sum_of_forces(const Chain& chain);
+
 /// A chain whose pressure is made admissible: forces are moved from edge to edge and from end to end, none
 /// further than it must.
 class AdmissibleChain {
@@ -38,9 +41,10 @@ class AdmissibleChain {
 
   const Chain& links() const { return chain_; }
 
-  /// Scales the pressure by 1 + μ₀ + μ₁ ξ, with ξ the given arm at each node, so that force and moment are
-  /// those of the given chain again. Returns false if the pressure would turn negative.
-  bool balance(const Chain& given, const std::vector<double>& arms);
+  /// Of an elastic body: multiplies the pressure by 1 + r·d, where d is the direction of contact and r a
+  /// rigid motion, such that force and moment are those of the given chain again. Returns false if the
+  /// pressure would turn negative.
+  bool balance(const Chain& given);
 
   /// An end of the chain lies on Γ_D.
   bool is_held(bool at_end) const;

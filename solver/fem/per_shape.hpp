@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -19,7 +20,8 @@ namespace signorini {
 template <typename Value>
 class PerShape {
  public:
-  explicit PerShape(const Discretization& problem) : problem_(problem) {}
+  explicit PerShape(const Discretization& problem)
+      : problem_(problem), digits_per_length_(digits_per_length(problem.mesh)) {}
 
   /// The value for a triangle, made if need be, from its matrices if `make` takes some; valid until the next
   /// call.
@@ -55,17 +57,26 @@ class PerShape {
     return (sizes(one - other) <= kRounding * sizes(one)).all();
   }
 
-  /// Mixes the leading digits of the numbers (Knuth's multiplicative hashing).
-  static std::size_t place(const Eigen::Matrix2d& jacobian) {
+  /// A power of two that makes whole numbers of some digits of the first triangle's coordinates.
+  static double digits_per_length(const Mesh& mesh) {
     constexpr int digits = 24;
-    const double scale = std::scalbn(1., digits - std::ilogb(jacobian.cwiseAbs().maxCoeff()));
+    const AffineMap first(mesh.corners(0));
+    return std::scalbn(1., digits - std::ilogb(first.jacobian.cwiseAbs().maxCoeff()));
+  }
+
+  /// Mixes the leading digits of the numbers (Knuth's multiplicative hashing).
+  std::size_t place(const Eigen::Matrix2d& jacobian) const {
+    // Beside this number a double has no digits behind the point.
+    constexpr double whole = 0x1.8p52;
     std::uint64_t mixed = 0;
-    for (const double number : jacobian.reshaped())
-      mixed = (mixed ^ static_cast<std::uint64_t>(std::llrint(scale * number))) * 0x9e3779b97f4a7c15u;
+    for (int i = 0; i < 4; ++i)
+      mixed = (mixed ^ std::bit_cast<std::uint64_t>(digits_per_length_ * jacobian(i) + whole)) *
+              0x9e3779b97f4a7c15u;
     return mixed >> (64 - kBits);
   }
 
   const Discretization& problem_;
+  const double digits_per_length_;
   std::array<std::unique_ptr<Remembered>, 1 << kBits> remembered_;
 };
 

@@ -48,8 +48,9 @@ struct Bowl {
     curvature = dense.sparseView();
   }
 
-  Eigen::VectorXd minimum(const std::vector<MovingPressure>& moving) {
-    return admissible_minimum(curvature, slope, moving, progress);
+  Eigen::VectorXd minimum(const std::vector<MovingPressure>& moving,
+                          const std::vector<LinearForm>& conditions = {}) {
+    return admissible_minimum(curvature, slope, moving, conditions, progress);
   }
   /// With x_k given.
   Eigen::Vector4d minimum_with(int k, double x) const {
@@ -89,11 +90,12 @@ TEST(AdmissibleMinimum, KeepsAPressureThatVanishesAndGoesOn) {
   }
 }
 
-TEST(AdmissibleMinimum, LeavesWhatIsKeptAndPaysForRoom) {
+TEST(AdmissibleMinimum, MeetsConditionsLeavesWhatIsKeptAndPaysForRoom) {
   Bowl bowl;
   const MovingPressure kept{0, 0, 1, {{2, 5.}}, 0, true};
   const Eigen::Vector4d found = bowl.minimum({kept});
   EXPECT_LE((found - bowl.minimum_with(2, 0)).cwiseQuotient(found + Eigen::Vector4d::Unit(2)).norm(), 1e-8);
+  EXPECT_LE((found - bowl.minimum({}, {{{2, 1.}}})).norm(), 1e-8 * found.norm());
   const MovingPressure costly{0, 0, 1e9, {{0, 2.}}, 0.25, false};
   Bowl steeper;
   steeper.slope[0] += 2 * 0.25;

@@ -69,10 +69,27 @@ Problem punch(Scheme scheme) {
 
 class Parts : public testing::TestWithParam<Scheme> {};
 
+/// On Γ_C the traction is −p* d with p* ≥ 0.
+void expect_pressure(const Made& made, const EdgeTractions& tractions, const ContactPressure& pressure) {
+  const Mesh& mesh = made.solution.mesh;
+  for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
+    const ContactEdge& contact = made.discretization.clearance.edges[i];
+    const int t = mesh.edge_triangles[contact.edge][0], e = mesh.local_edge(t, contact.edge);
+    Eigen::Matrix<double, 2, 3> own = tractions.on(t, e);
+    if (mesh.triangles[t][(e + 1) % 3] != mesh.edges[contact.edge][0]) own.col(0).swap(own.col(1));
+    const auto [p, q] = pressure.at_ends[i];
+    EXPECT_GE(std::min(p, q), 0);
+    const double rounding = 1e-10 * made.solution.stress.cwiseAbs().maxCoeff() / mesh.length(contact.edge);
+    EXPECT_LE((own.col(0) + p * contact.direction).norm(), rounding);
+    EXPECT_LE((own.col(1) + q * contact.direction).norm(), rounding);
+  }
+}
+
 /// Every triangle is in balance of forces and of moments, and has the traction given on Γ_F.
 void expect_balance(const Made& made, const ContactPressure& pressure) {
   const EdgeTractions tractions(made.discretization, made.solution.stress, pressure);
   EXPECT_TRUE(tractions.unmet().empty());
+  expect_pressure(made, tractions, pressure);
   const Mesh& mesh = made.solution.mesh;
   for (int t = 0; t < made.discretization.triangles(); ++t) {
     const auto corners = mesh.corners(t);
@@ -120,6 +137,33 @@ TEST_P(Parts, EveryTriangleIsInBalanceOfForcesAndMoments) {
   minimize_airy(made.discretization, {made.discretization, made.progress}, made.solution.stress,
                 made.displacement(), made.clearance, pressure, made.progress);
   expect_balance(made, pressure);
+}
+
+/// Each edge of the polygon has a normal of its own.
+TEST(Parts, OfContactThatBendsAreInBalance) {
+  for (const bool is_round : {true, false}) {
+    Problem problem = problems::half_disc(Scheme::conforming);
+    if (!is_round) {
+      problem.domain =
+          Polygon{{{0, 0}, {1, -0.1}, {2, 0}, {2, 1}, {0, 1}}, {}, {"arc", "arc", "side", "top", "side"}};
+      problem.boundary["arc"] = Contact{problems::function([](const Point& x) { return 0.015 * x.x(); })};
+    }
+    const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+    ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
+    EXPECT_TRUE(pressure.unmet.empty());
+    const auto largest = [](const auto& ends) {
+      double most = 0;
+      for (const auto& [p, q] : ends) most = std::max({most, std::abs(p), std::abs(q)});
+      return most;
+    };
+    EXPECT_GT(largest(pressure.changes), 0.01 * largest(pressure.at_ends));
+    expect_balance(made, pressure);
+    const auto before = pressure.at_ends;
+    minimize_airy(made.discretization, {made.discretization, made.progress}, made.solution.stress,
+                  made.displacement(), made.clearance, pressure, made.progress);
+    EXPECT_NE(pressure.at_ends, before);
+    expect_balance(made, pressure);
+  }
 }
 
 /// p* is nowhere negative, and has force and moment of p_h.
