@@ -171,17 +171,16 @@ class Minimization {
       const auto& corners = mesh_.triangles[t];
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
       const AffineMap map(mesh_.corners(t));
-      MacroValues<Eigen::Dynamic>::Given given{Eigen::MatrixXd::Zero(MacroElement::kData, 10),
-                                               Eigen::MatrixXd::Zero(stress.rows(), 10),
-                                               Eigen::MatrixXd::Zero(12, 10),
-                                               {}};
-      given.data.leftCols<9>() = data_of_airy(t, map);
-      given.data.col(9) = macro_data(tractions, load, t, map);
-      given.stress.col(9) = stress.col(t);
-      const MacroValues<Eigen::Dynamic> values(rule, map, given, laws_at(problem_, rule, map, law));
-      const Eigen::MatrixXd changes = values.correction.leftCols<9>();
+      Eigen::Matrix<double, MacroElement::kData, kAiryColumns> data;
+      data << data_of_airy(t, map), macro_data(tractions, load, t, map);
+      Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> coefficients(stress.rows(), kAiryColumns);
+      coefficients << Eigen::MatrixXd::Zero(stress.rows(), 9), stress.col(t);
+      const std::vector<SymmetricLaw> laws = laws_at(problem_, rule, map, law);
+      const MacroStress<kAiryColumns> sigma(rule, map, data, coefficients, laws);
+      const auto corrections = correction(rule, map, sigma, laws);
+      const auto changes = corrections.leftCols<9>();
       const Eigen::Matrix<double, 9, 9> own = 2 * changes.transpose() * changes;
-      const Eigen::Matrix<double, 9, 1> towards = 2 * changes.transpose() * values.correction.col(9);
+      const Eigen::Matrix<double, 9, 1> towards = 2 * changes.transpose() * corrections.col(9);
       for (int k = 0; k < 3; ++k) {
         const Place& row = places_[corners[k]];
         if (row.size() == 0) continue;

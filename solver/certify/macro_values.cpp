@@ -42,6 +42,10 @@ Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 16> stresses(const AffineMap& map
   return stress;
 }
 
+const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
+  return laws[laws.size() == 1 ? 0 : q];
+}
+
 }  // namespace
 
 MacroRule::MacroRule(const Spaces& spaces, int cuts) : places(MacroElement::places(cuts)) {
@@ -84,33 +88,53 @@ std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule
 }
 
 template <int Columns>
+MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
+                                  const Block<MacroElement::kData>& data,
+                                  const Block<Eigen::Dynamic>& coefficients,
+                                  std::span<const SymmetricLaw> laws)
+    : admissible(rule.size(), Block<3>::Zero(3, data.cols())),
+      discrete(admissible),
+      skew(rule.size(), data.cols()) {
+  const Eigen::Matrix3d to_triangle = piola(map);
+  constexpr int kFree = MacroElement::kFree;
+  Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
+  Block<kFree> free_right = Block<kFree>::Zero(kFree, data.cols());
+  for (int q = 0; q < rule.size(); ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    const auto of_stress = stresses(map, at.stress);
+    discrete[q].noalias() = of_stress.template topRows<3>() * coefficients;
+    skew.row(q).noalias() = of_stress.row(3) * coefficients;
+    admissible[q].noalias() = (to_triangle * at.balanced).eval() * data;
+    const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
+    const Eigen::Matrix<double, kFree, 3> weighted =
+        rule.places[q].weight * own.transpose() * law_at(laws, q).compliance;
+    free_matrix += weighted * own;
+    free_right += weighted * (discrete[q] - admissible[q]);
+  }
+  const Block<kFree> free = free_matrix.ldlt().solve(free_right);
+  for (int q = 0; q < rule.size(); ++q) admissible[q] += (to_triangle * rule.values[q].free).eval() * free;
+}
+
+template <int Columns>
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule, const AffineMap& map,
+                                                          const MacroStress<Columns>& stress,
+                                                          std::span<const SymmetricLaw> laws) {
+  Eigen::Matrix<double, Eigen::Dynamic, Columns> rows(3 * rule.size(), stress.skew.cols());
+  for (int q = 0; q < rule.size(); ++q)
+    rows.template middleRows<3>(3 * q) = std::sqrt(rule.places[q].weight * map.determinant) *
+                                         law_at(laws, q).factor.transpose() *
+                                         (stress.admissible[q] - stress.discrete[q]);
+  return rows;
+}
+
+template <int Columns>
 MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
                                   std::span<const SymmetricLaw> laws) {
   const int points = rule.size();
   const Eigen::Index columns = given.data.cols();
-  const Eigen::Matrix3d to_triangle = piola(map);
   const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
-  const auto law = [&](int q) -> const SymmetricLaw& { return laws[laws.size() == 1 ? 0 : q]; };
   const auto weight = [&](int q) { return rule.places[q].weight * map.determinant; };
-
-  // σ* is the stress with the data and the free one that brings it nearest to σ_h.
-  std::vector<Block<3>> sigma(points, Block<3>::Zero(3, columns)), balanced = sigma;
-  Block<Eigen::Dynamic> skew_part(points, columns);
-  constexpr int kFree = MacroElement::kFree;
-  Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
-  Block<kFree> free_right = Block<kFree>::Zero(kFree, columns);
-  for (int q = 0; q < points; ++q) {
-    const MacroRule::Values& at = rule.values[q];
-    const auto of_stress = stresses(map, at.stress);
-    sigma[q].noalias() = of_stress.template topRows<3>() * given.stress;
-    skew_part.row(q).noalias() = of_stress.row(3) * given.stress;
-    balanced[q].noalias() = (to_triangle * at.balanced).eval() * given.data;
-    const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
-    const Eigen::Matrix<double, kFree, 3> weighted = weight(q) * own.transpose() * law(q).compliance;
-    free_matrix += weighted * own;
-    free_right += weighted * (sigma[q] - balanced[q]);
-  }
-  const Block<kFree> free = free_matrix.ldlt().solve(free_right);
+  const MacroStress<Columns> sigma(rule, map, given.data, given.stress, laws);
 
   // v is v_h and what brings its strain nearest to C σ*.
   std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));
@@ -118,37 +142,40 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
   Block<2 * kInner> inner_right = Block<2 * kInner>::Zero(2 * kInner, columns);
   for (int q = 0; q < points; ++q) {
     const MacroRule::Values& at = rule.values[q];
-    balanced[q] += (to_triangle * at.free).eval() * free;
     strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
     if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
     const auto own = strains<kInner>(to_gradients * at.inner_gradients);
-    const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law(q).stiffness;
+    const SymmetricLaw& law = law_at(laws, q);
+    const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law.stiffness;
     inner_matrix += weighted * own;
-    inner_right += weighted * (law(q).compliance * balanced[q] - strains_of_v[q]);
+    inner_right += weighted * (law.compliance * sigma.admissible[q] - strains_of_v[q]);
   }
   inner = inner_matrix.ldlt().solve(inner_right);
 
   gap.resize(3 * points, columns);
   direct_gap.resize(3 * points, columns);
   strain.resize(3 * points, columns);
-  correction.resize(3 * points, columns);
+  correction = signorini::correction(rule, map, sigma, laws);
   skew.resize(points, columns);
   stress.resize(4 * points, columns);
   for (int q = 0; q < points; ++q) {
-    const SymmetricLaw& own = law(q);
+    const SymmetricLaw& own = law_at(laws, q);
     const double root = std::sqrt(weight(q)), of_skew = root * std::sqrt(own.skew_compliance);
     const auto factor = own.factor.template triangularView<Eigen::Lower>();
     const Block<3> all =
         strains_of_v[q] + strains<kInner>(to_gradients * rule.values[q].inner_gradients) * inner;
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
-    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * balanced[q] - all);
-    direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma[q] - all);
-    correction.template middleRows<3>(3 * q) = root * own.factor.transpose() * (balanced[q] - sigma[q]);
-    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma[q];
-    skew.row(q) = stress.row(4 * q + 3) = of_skew * skew_part.row(q);
+    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.admissible[q] - all);
+    direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.discrete[q] - all);
+    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma.discrete[q];
+    skew.row(q) = stress.row(4 * q + 3) = of_skew * sigma.skew.row(q);
   }
 }
 
+template struct MacroStress<kAiryColumns>;
+template Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> correction(const MacroRule&, const AffineMap&,
+                                                                        const MacroStress<kAiryColumns>&,
+                                                                        std::span<const SymmetricLaw>);
 template struct MacroValues<1>;
 template struct MacroValues<Eigen::Dynamic>;
 

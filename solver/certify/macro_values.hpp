@@ -48,6 +48,32 @@ struct SymmetricLaw {
 std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
                                   LawField<2>& law);
 
+/// The stresses on a macro-element for any number of columns of what describes them: its data and the
+/// coefficients of σ_h.
+template <int Columns>
+struct MacroStress {
+  template <int Rows>
+  using Block = Eigen::Matrix<double, Rows, Columns>;
+
+  /// The law at every point of the rule, or one for all.
+  MacroStress(const MacroRule& rule, const AffineMap& map, const Block<MacroElement::kData>& data,
+              const Block<Eigen::Dynamic>& coefficients, std::span<const SymmetricLaw> laws);
+
+  /// By points, tensors of Mandel: the stress with the data that is nearest to σ_h, and the symmetric part of
+  /// σ_h itself.
+  std::vector<Block<3>> admissible, discrete;
+  Block<Eigen::Dynamic> skew;  ///< of σ_h: a row a point
+};
+
+/// (ψ, ∇ψ) at three corners, and what is there.
+constexpr int kAiryColumns = 10;
+
+/// √weight (σ* − the symmetric part of σ_h) in the norm of C, the rows of all points.
+template <int Columns>
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule, const AffineMap& map,
+                                                          const MacroStress<Columns>& stress,
+                                                          std::span<const SymmetricLaw> laws);
+
 /// What the bound integrates over a triangle, for any number of columns of what describes it: the data of the
 /// macro-element, the coefficients of σ_h, and v_h at the nodes of P2 (x and y in turns). All is linear in
 /// them, so that the columns of the unit matrix give the operators of a shape, and a single column the values
