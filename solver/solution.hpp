@@ -23,7 +23,7 @@ enum class Outcome { converged, iteration_limit, time_limit, diverged, tolerance
 const char* name(Outcome outcome);
 
 /// The discrete fields on one part of the contact boundary, one row a contact edge (its midpoint, P0) or
-/// one a node in the order along the part (P1 continuous).
+/// one a node in the order along the part (P1; two where the direction of the contact turns).
 struct ContactPart {
   std::string name;
   std::vector<Point> points;

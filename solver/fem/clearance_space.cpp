@@ -50,7 +50,7 @@ class Builder {
   }
 
   void add_part(int part, const Contact& contact) {
-    row_of_node_.clear();
+    rows_of_node_.clear();
     for (const int edge : mesh_.boundary[part].edges) add_edge(part, edge, contact);
   }
 
@@ -96,13 +96,19 @@ class Builder {
   }
 
   int row_of_node(int part, int node, const Field& gap, const Vector& normal, const Vector& direction) {
-    const auto known = row_of_node_.find(node);
-    if (known != row_of_node_.end()) return known->second;
+    const auto [begin, end] = rows_of_node_.equal_range(node);
+    for (auto known = begin; known != end; ++known)
+      if (runs_on(known->second.direction, direction)) return known->second.row;
     const ClearanceRow row{part, mesh_.points[node], gap(mesh_.points[node], normal)};
     const auto held = held_displacement(node, direction);
     const int index = held ? held_row(row, *held) : new_row(row);
-    row_of_node_.emplace(node, index);
+    rows_of_node_.emplace(node, RowOfNode{index, direction});
     return index;
+  }
+
+  /// Where the direction turns, u_n jumps though u does not, and so does the clearance.
+  bool runs_on(const Vector& one, const Vector& other) const {
+    return components_ == 1 || one.dot(other) > 1 - 1e-12;
   }
 
   /// u_n at a node that another part holds: on Γ_D, or between rollers that run on in the same direction.
@@ -135,7 +141,11 @@ class Builder {
   const int order_;
   const HeldPoints held_;
   double largest_fixed_ = 0;
-  std::unordered_map<int, int> row_of_node_;  ///< of the part that is being added
+  struct RowOfNode {
+    int row;
+    Vector direction;
+  };
+  std::unordered_multimap<int, RowOfNode> rows_of_node_;  ///< of the part that is being added
   ClearanceSpace space_;
 };
 

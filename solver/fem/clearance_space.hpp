@@ -9,7 +9,7 @@
 namespace signorini {
 
 /// One function φ_i of the clearance space: the indicator of a contact edge (P0), or the hat of a node of
-/// a contact part (P1 continuous along the part).
+/// a contact part (P1, continuous along the part but where its direction turns: u_n jumps there).
 struct ClearanceRow {
   int part;           ///< index of the boundary part
   Point point;        ///< midpoint of the edge, or the node

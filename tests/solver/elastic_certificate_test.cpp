@@ -139,6 +139,27 @@ INSTANTIATE_TEST_SUITE_P(Poisson, ContactEnds,
                          testing::Combine(testing::Values(Scheme::conforming, Scheme::nonconforming),
                                           testing::Values(0., 0.1, 0.3, 0.49, 0.4999)));
 
+/// Across a corner of the polygon u_n jumps: a clearance that did not would hold the body there, on any mesh.
+TEST(ContactThatBends, IsSolvedAsWellAsContactThatDoesNot) {
+  std::vector<ErrorBound> bounds;
+  for (const int refine : {0, 1, 2}) {
+    Problem problem = lowered_disc(Scheme::conforming);
+    problem.mesh.refine = refine;
+    const Solution solution = solved(problem);
+    bounds.push_back(*solution.summary.error_bound);
+    // A row for either side of each corner.
+    const ContactPart& arc = solution.contact[0];
+    for (std::size_t i = 1; i + 1 < arc.points.size() && refine == 0; i += 2)
+      EXPECT_EQ(arc.points[i], arc.points[i + 1]);
+  }
+  EXPECT_LE(bounds[1].value, 0.6 * bounds[0].value);
+  EXPECT_LE(bounds[2].value, 0.6 * bounds[1].value);
+  for (const ErrorBound& bound : bounds) {
+    EXPECT_LE(bound.energy_lower, bounds[2].energy_upper);
+    EXPECT_GE(bound.energy_upper, bounds[2].energy_lower);
+  }
+}
+
 TEST(SmoothBody, TheBoundFallsAtTheRateOfTheScheme) {
   for (const auto& [scheme, order] : {std::pair(Scheme::conforming, 1.85), {Scheme::nonconforming, 0.95}}) {
     std::vector<double> bounds;
