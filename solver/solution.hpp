@@ -153,7 +153,8 @@ struct TrueErrors {
   std::optional<double> energy_norm;   ///< ‖σ − σ_h‖_C
   std::optional<double> energy;        ///< |J(u) − J_h|
   /// What the error bound bounds: √(‖σ − σ_h‖²_C + 2 (J(v) − J(u)) + 2 <p*, g − u_n>) with its v and p*,
-  /// where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E + 2 <p, g − v_n>. The last term counts if u is known.
+  /// where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E + 2 <p, g − v_n>. The last term counts if u is known, on the
+  /// edges of Solution::admissible_pressure.
   std::optional<double> total;
 };
 

@@ -154,8 +154,16 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
   }
   if (!faults.empty()) return faults;
   const Mesh coarse = make_coarse_mesh(problem.domain);
-  const auto check = [&](const auto& evaluate) {
+  const auto check = [&](const auto& evaluate, bool on_contact) {
     try {
+      for (const BoundaryPart& part : coarse.boundary) {
+        if (!on_contact || !condition_on<Contact>(problem, part.name)) continue;
+        for (const int edge : part.edges)
+          for (const double s : edge_rule().points) {
+            const auto& [a, b] = coarse.edges[edge];
+            evaluate(Point((1 - s) * coarse.points[a] + s * coarse.points[b]));
+          }
+      }
       for (int t = 0; t < static_cast<int>(coarse.triangles.size()); ++t) {
         const AffineMap map(coarse.corners(t));
         for (const Point& reference : triangle_rule().points) evaluate(map(reference));
@@ -165,8 +173,9 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
     }
   };
   if (const auto& displacement = study.exact.displacement)
-    for (int c = 0; c < displacement->size(); ++c) check([&](const Point& x) { (*displacement)(c, x); });
-  for (const Field& stress : study.exact.stress) check([&](const Point& x) { stress(x); });
+    for (int c = 0; c < displacement->size(); ++c)
+      check([&](const Point& x) { (*displacement)(c, x); }, true);
+  for (const Field& stress : study.exact.stress) check([&](const Point& x) { stress(x); }, false);
   return faults;
 }
 

@@ -1,5 +1,6 @@
 #include "true_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 

@@ -34,10 +34,13 @@ class FreeUnknowns {
     double largest = 0;
     for (const auto& [unknown, factor] : row) {
       largest = std::max(largest, std::abs(factor));
-      if (const auto known = known_.find(unknown); known != known_.end())
-        add(factor, known->second, rest);
-      else
+      const auto known = known_.find(unknown);
+      if (known == known_.end()) {
         rest[unknown] += factor;
+        continue;
+      }
+      add(factor, known->second, rest);
+      for (const auto& [other, share] : known->second) largest = std::max(largest, std::abs(factor * share));
     }
     const auto pivot =
         std::ranges::max_element(rest, {}, [](const auto& term) { return std::abs(term.second); });
@@ -87,10 +90,12 @@ class Objective {
     Sparse matrix = basis_.transpose() * curvature * basis_;
     matrix.diagonal() *= 1 + kRegular;
     factor_.compute(matrix);
-    if (is_regular()) lowest_ = -factor_.solve(basis_.transpose() * slope);
+    is_regular_ = basis_.cols() > 0 && factor_.info() == Eigen::Success;
+    if (is_regular_) lowest_ = -factor_.solve(basis_.transpose() * slope);
+    is_regular_ = is_regular_ && lowest_.allFinite();
   }
 
-  bool is_regular() const { return basis_.cols() > 0 && factor_.info() == Eigen::Success; }
+  bool is_regular() const { return is_regular_; }
 
   void keep(const LinearForm& form) {
     Eigen::VectorXd of_unknowns = Eigen::VectorXd::Zero(basis_.rows());
@@ -116,6 +121,7 @@ class Objective {
   const Sparse basis_;
   Eigen::SimplicialLDLT<Sparse> factor_;
   Eigen::VectorXd lowest_;
+  bool is_regular_;
   Eigen::MatrixXd rows_, answers_;  ///< of the pressures kept: row·y, and H⁻¹ row
 };
 

@@ -51,15 +51,15 @@ ContactPressure::ContactPressure(const Discretization& problem, const Eigen::Mat
   const double largest_flux = stress.cwiseAbs().maxCoeff();
   for (const Chain& given : pressure_chains(problem, stress)) {
     const double scale = kRounding * (sum_of_forces(given) + largest_flux);
-    const AdmissibleChain chain = admissible(problem, given, clearance);
+    const AdmissibleChain chain = admissible(problem, given, clearance, scale);
     keep(problem, given, chain.links());
     if (problem.spaces().components == 2) {
       add_airy(problem, given, chain, scale);
       continue;
     }
     const Potential potential(given, chain);
-    const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
-    if (free_ends && std::abs(potential.at_nodes.back()) > 100 * scale) refuse(problem, given, "pulls");
+    if (chain.has_free_ends() && std::abs(potential.at_nodes.back()) > 100 * scale)
+      refuse(problem, given, "pulls");
     if (potential.largest() > scale) add_curl(problem, chain.links(), potential.at_nodes, potential.means);
   }
 }
@@ -75,19 +75,20 @@ Quadratic<1> ContactPressure::potential_on(const Mesh& mesh, int t) const {
 }
 
 void ContactPressure::refuse(const Discretization& problem, const Chain& chain, const std::string& what) {
-  unmet.push_back("the contact near " + to_string(problem.mesh.points[chain[0].begin]) + " " + what);
+  const std::string why = "the contact near " + to_string(problem.mesh.points[chain[0].begin]) + " " + what;
+  if (std::ranges::find(unmet, why) == unmet.end()) unmet.push_back(why);
 }
 
 /// Of an elastic body force and moment must stay. An edge between closed and open is left without pressure
 /// then, because its share would act with a moment, unless the contact is too short to balance it otherwise.
 AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
-                                            const Eigen::VectorXd& clearance) {
+                                            const Eigen::VectorXd& clearance, double rounding) {
   using Transition = AdmissibleChain::Transition;
   AdmissibleChain loaded(problem, given, clearance, Transition::loaded);
   if (problem.spaces().components == 1) return loaded;
   AdmissibleChain free(problem, given, clearance, Transition::free);
-  if (free.is_held(false) || free.is_held(true) || free.balance(given)) return free;
-  if (!loaded.balance(given)) refuse(problem, given, "pulls");
+  if (!free.has_free_ends() || free.balance(given, rounding)) return free;
+  if (!loaded.balance(given, rounding)) refuse(problem, given, "pulls");
   return loaded;
 }
 
@@ -157,8 +158,7 @@ void ContactPressure::add_airy(const Discretization& problem, const Chain& given
     const double rest = psi.back();
     for (double& value : psi) value -= rest;
   }
-  const bool free_ends = !chain.is_held(false) && !chain.is_held(true);
-  if (free_ends && (w.back().norm() > 100 * scale || std::abs(psi.back()) > 100 * scale * length))
+  if (chain.has_free_ends() && (w.back().norm() > 100 * scale || std::abs(psi.back()) > 100 * scale * length))
     refuse(problem, given, "pulls");
   const auto set = [&](int point, std::size_t i) {
     airy_at_points[point] = {psi[i], Vector(-w[i].y(), w[i].x())};

@@ -15,7 +15,8 @@ namespace signorini {
 ///
 /// p* − p_h is the derivative along Γ_C of a potential Ψ that vanishes where Γ_C ends (but not where Γ_D
 /// begins, whose traction is free), so that a stress without divergence makes the change: for a membrane the
-/// curl of Ψ; for an elastic body, whose moments must balance too, the Airy stress of a function ψ.
+/// curl of Ψ; for an elastic body Ψ is a vector, along the direction of each edge, and the Airy stress of a
+/// function ψ makes the change, so that moments balance too.
 struct ContactPressure {
   /// ψ and ∇ψ at a point.
   struct Airy {
@@ -42,7 +43,7 @@ struct ContactPressure {
 
  private:
   AdmissibleChain admissible(const Discretization& problem, const Chain& given,
-                             const Eigen::VectorXd& clearance);
+                             const Eigen::VectorXd& clearance, double rounding);
   void keep(const Discretization& problem, const Chain& given, const Chain& admissible);
   void add_curl(const Discretization& problem, const Chain& chain, const std::vector<double>& at_nodes,
                 const std::vector<double>& means);

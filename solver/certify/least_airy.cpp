@@ -1,6 +1,7 @@
 #include "certify/least_airy.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "certify/admissible_minimum.hpp"

@@ -1,5 +1,8 @@
 #include "certify/least_potential.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <Eigen/LU>
 
 #include "certify/admissible_minimum.hpp"

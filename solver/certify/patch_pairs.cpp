@@ -1,5 +1,6 @@
 #include "certify/patch_pairs.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "certify/least_potential.hpp"

@@ -185,7 +185,11 @@ void AdmissibleChain::spread(Link& link) const {
   link.forces = {at_begin, force - at_begin};
 }
 
-bool AdmissibleChain::balance(const Chain& given) {
+bool AdmissibleChain::balance(const Chain& given, double rounding) {
+  if (sum_of_forces(given) <= rounding) {
+    for (Link& link : chain_) link.forces = {0, 0};
+    return true;
+  }
   const Motions motions(problem_, chain_);
   // The forces of the pressure times the values at the ends of an edge.
   const auto scaled = [&](const Link& link, double begin, double end) {
@@ -206,7 +210,7 @@ bool AdmissibleChain::balance(const Chain& given) {
   decomposition.setThreshold(1e-13);
   decomposition.compute(matrix);
   const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_), mu = decomposition.solve(lack);
-  bool pushes = (matrix * mu - lack).norm() <= 1e-12 * sum_of_forces(given);
+  bool pushes = (matrix * mu - lack).norm() <= 10 * rounding;
   for (Link& link : chain_) {
     const auto [at_begin, at_end] = motions.along(link);
     const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);

@@ -44,7 +44,10 @@ class AdmissibleChain {
   /// Of an elastic body: multiplies the pressure by 1 + r·d, where d is the direction of contact and r a
   /// rigid motion, such that force and moment are those of the given chain again. Returns false if the
   /// pressure would turn negative.
-  bool balance(const Chain& given);
+  bool balance(const Chain& given, double rounding);
+
+  /// Neither end of the chain lies on Γ_D.
+  bool has_free_ends() const { return !is_held(false) && !is_held(true); }
 
   /// An end of the chain lies on Γ_D.
   bool is_held(bool at_end) const;

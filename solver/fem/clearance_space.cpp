@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "fem/lagrange.hpp"
+#include "mesh/parts.hpp"
 
 namespace signorini {
 namespace {
@@ -51,7 +52,9 @@ class Builder {
 
   void add_part(int part, const Contact& contact) {
     rows_of_node_.clear();
-    for (const int edge : mesh_.boundary[part].edges) add_edge(part, edge, contact);
+    const BoundaryPart& boundary = mesh_.boundary[part];
+    const std::vector<std::array<int, 2>> ways = directed_edges(mesh_, boundary);
+    for (std::size_t i = 0; i < ways.size(); ++i) add_edge(part, boundary.edges[i], ways[i], contact);
   }
 
   ClearanceSpace take() { return std::move(space_); }
@@ -70,22 +73,23 @@ class Builder {
     return direction;
   }
 
-  void add_edge(int part, int edge, const Contact& condition) {
+  /// `way`: the ends of the edge in the direction in which the part runs.
+  void add_edge(int part, int edge, const std::array<int, 2>& way, const Contact& condition) {
     const auto [a, b] = mesh_.edges[edge];
     const Point from = mesh_.points[a], to = mesh_.points[b];
     const Vector normal = mesh_.outward_normal(edge);
-    const LocalVector projection = project_onto_edge(order_, edge_moments(order_, [&](double s) {
-                                                       return condition.gap(from + s * (to - from), normal);
-                                                     }));
+    const auto gap = [&](double s) { return condition.gap(from + s * (to - from), normal); };
+    const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
     ContactEdge contact{edge, {}, {}, direction_on(part, condition, edge)};
+    if (order_ == 0)
+      contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
+    else
+      for (const int node : way)
+        contact.rows[node == a ? 0 : 1] = row_of_node(part, node, condition.gap, normal, contact.direction);
     for (int j = 0; j <= order_; ++j) {
-      contact.rows[j] = order_ == 0
-                            ? new_row({part, (from + to) / 2, projection[0]})
-                            : row_of_node(part, j == 0 ? a : b, condition.gap, normal, contact.direction);
       contact.gap[j] = projection[j];
       space_.rows[contact.rows[j]].weight += mesh_.length(edge) / (order_ + 1);
     }
-    if (order_ == 0) contact.rows[1] = contact.rows[0];
     space_.edges.push_back(contact);
   }
 
@@ -95,20 +99,16 @@ class Builder {
     return static_cast<int>(space_.rows.size()) - 1;
   }
 
+  /// Where the direction turns, u_n jumps though u does not, and so does the clearance.
   int row_of_node(int part, int node, const Field& gap, const Vector& normal, const Vector& direction) {
     const auto [begin, end] = rows_of_node_.equal_range(node);
     for (auto known = begin; known != end; ++known)
-      if (runs_on(known->second.direction, direction)) return known->second.row;
+      if (components_ == 1 || is_same_direction(known->second.direction, direction)) return known->second.row;
     const ClearanceRow row{part, mesh_.points[node], gap(mesh_.points[node], normal)};
     const auto held = held_displacement(node, direction);
     const int index = held ? held_row(row, *held) : new_row(row);
     rows_of_node_.emplace(node, RowOfNode{index, direction});
     return index;
-  }
-
-  /// Where the direction turns, u_n jumps though u does not, and so does the clearance.
-  bool runs_on(const Vector& one, const Vector& other) const {
-    return components_ == 1 || one.dot(other) > 1 - 1e-12;
   }
 
   /// u_n at a node that another part holds: on Γ_D, or between rollers that run on in the same direction.
@@ -118,7 +118,7 @@ class Builder {
       return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
     const auto [begin, end] = held_.rollers.equal_range(node);
     for (auto roller = begin; roller != end; ++roller)
-      if (roller->second.dot(direction) > 1 - 1e-9) return 0;
+      if (is_same_direction(roller->second, direction)) return 0;
     return std::nullopt;
   }
 

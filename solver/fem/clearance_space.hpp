@@ -8,6 +8,11 @@
 
 namespace signorini {
 
+/// Of unit vectors, but for what the coordinates of a straight line are rounded by.
+inline bool is_same_direction(const Vector& one, const Vector& other) {
+  return one.dot(other) > 1 - 1e-9;
+}
+
 /// One function φ_i of the clearance space: the indicator of a contact edge (P0), or the hat of a node of
 /// a contact part (P1, continuous along the part but where its direction turns: u_n jumps there).
 struct ClearanceRow {

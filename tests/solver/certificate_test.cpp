@@ -292,6 +292,44 @@ TEST(LoadValues, ProjectsOntoQuadraticFunctions) {
     }
 }
 
+/// σ_h balances what the scheme integrated, by a rule that a jump is too much for.
+TEST(LoadValues, HaveTheForceAndTheCoupleOfTheDiscreteLoad) {
+  const Field step = problems::function([](const Point& x) { return x.x() + x.y() < 0.6 ? 1 : 5.; });
+  for (const bool is_elastic : {false, true}) {
+    Problem problem = problems::paper(Scheme::nonconforming, 2);
+    problem.body = VectorField(step);
+    if (is_elastic) {
+      problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
+      problem.body = VectorField(step, step);
+    }
+    const Mesh mesh = rectangle_mesh(std::get<Rectangle>(problem.domain), {2, 2}, Pattern::right);
+    const Discretization discretization(problem, mesh);
+    Observer observer;
+    Progress progress(observer, std::nullopt);
+    for (int t = 0; t < discretization.triangles(); ++t) {
+      const AffineMap map(mesh.corners(t));
+      Vector force = Vector::Zero();
+      double couple = 0;
+      for (int q = 0; q < TriangleRule::size; ++q) {
+        const Point& x = triangle_rule().points[q];
+        const double weight = triangle_rule().weights[q] * map.determinant;
+        const Vector arm = map(x) - mesh.centroid(t);
+        Vector f = Vector::Zero();
+        if (is_elastic)
+          f = LoadValues<2>(discretization, progress).projection(t).balanced * quadratic_basis(x);
+        else
+          f.x() = LoadValues<1>(discretization, progress).projection(t).balanced * quadratic_basis(x);
+        force += weight * f;
+        couple += weight * (arm.x() * f.y() - arm.y() * f.x());
+      }
+      EXPECT_NEAR(force.x(), discretization.load(0, t), 1e-14);
+      if (is_elastic) {
+        EXPECT_NEAR(std::abs(couple), std::abs(discretization.couples[t]), 1e-14);
+      }
+    }
+  }
+}
+
 TEST(QuadraticBalance, HasWhatTheStressLacksOfLoadAndTraction) {
   const auto f = [](const Point& x) { return 1 + 2 * x.x() - 3 * x.y() + 4 * x.x() * x.y() - x.y() * x.y(); };
   const auto t = [](const Point& x) {

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cmath>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
@@ -49,15 +50,23 @@ double clearance_error(const ContactPart& part, const Clearance& exact) {
   return std::sqrt(sum);
 }
 
-/// The clearance of a contact part where an edge from a to a + way consists of some of its edges, by
-/// s ∈ [0, 1]; else less than two values.
-inline std::map<double, double> clearance_along(const ContactPart& part, const Point& a, const Vector& way) {
-  std::map<double, double> values;
+/// The clearance of a contact part where an edge from a to a + way consists of some of its edges, with
+/// s ∈ [0, 1] first; else less than two values.
+inline std::vector<std::pair<double, double>> clearance_along(const ContactPart& part, const Point& a,
+                                                              const Vector& way) {
+  constexpr double rounding = 1e-9;
+  std::vector<std::pair<double, double>> values;
   for (std::size_t i = 0; i < part.points.size(); ++i) {
-    const double s = (part.points[i] - a).dot(way) / way.squaredNorm(), rounding = 1e-9;
+    const double s = (part.points[i] - a).dot(way) / way.squaredNorm();
     const bool lies_there = (a + s * way - part.points[i]).norm() < rounding * way.norm();
-    if (lies_there && s > -rounding && s < 1 + rounding) values[s] = part.clearance[i];
+    if (lies_there && s > -rounding && s < 1 + rounding) values.emplace_back(s, part.clearance[i]);
   }
+  // Where the part bends, the neighbour has a row in the same point.
+  const auto coincide = [](const auto& one, const auto& other) {
+    return std::abs(one.first - other.first) < rounding;
+  };
+  if (values.size() > 2 && coincide(values[0], values[1])) values.erase(values.begin());
+  if (values.size() > 2 && coincide(values.back(), *(values.end() - 2))) values.pop_back();
   return values;
 }
 
@@ -69,13 +78,16 @@ inline double contact_term(const Solution& coarse, const Solution& fine) {
     const Point a = coarse.mesh.points[first];
     const Vector way = coarse.mesh.points[second] - a;
     for (const ContactPart& part : fine.contact) {
-      const std::map<double, double> clearance = clearance_along(part, a, way);
-      for (auto end = clearance.begin(), begin = end; end != clearance.end(); begin = end++)
+      const auto clearance = clearance_along(part, a, way);
+      for (std::size_t i = 1; i < clearance.size(); ++i) {
+        const auto [begin, from] = clearance[i - 1];
+        const auto [end, to] = clearance[i];
         for (int q = 0; q < EdgeRule::size; ++q) {
-          const double share = edge_rule().points[q], step = end->first - begin->first;
-          sum += 2 * edge_rule().weights[q] * step * way.norm() * pressure(begin->first + share * step) *
-                 (begin->second + share * (end->second - begin->second));
+          const double share = edge_rule().points[q];
+          sum += 2 * edge_rule().weights[q] * std::abs(end - begin) * way.norm() *
+                 pressure(begin + share * (end - begin)) * (from + share * (to - from));
         }
+      }
     }
   }
   return sum;
