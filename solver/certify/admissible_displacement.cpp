@@ -22,6 +22,7 @@ Eigen::VectorXd value_of(const VectorField& field, int components, const Point& 
 /// would fix the point along the curve too, which is so in the corner itself but not near it.
 bool turns_slightly(const std::vector<PointConstraint>& constraints) {
   return std::ranges::any_of(constraints, [&](const PointConstraint& constraint) {
+    if (constraint.direction.size() == 1) return false;
     const Vector one = constraint.direction, other = constraints[0].direction;
     return one.dot(other) > 0.9 && !is_same_direction(one, other);
   });
