@@ -10,11 +10,9 @@ namespace signorini::api {
 /// unit normal nx, ny.
 enum class Variables { interior, boundary };
 
-/// Compiles an expression (muParser's functions and operators, `? :`, `&&`, `||`, the constant `pi`) to
-/// a field named by its JSON pointer. Throws InvalidProblem with that pointer if the text is too long,
-/// holds what no expression may hold (assignment, several expressions, other variables) or does not parse.
-///
-/// The field must not be evaluated by two threads at once; copies share their state.
+/// Reads an expression (parse_formula) as a field named by its JSON pointer. Throws InvalidProblem with that
+/// pointer if the text is too long, holds what no expression may hold (assignment, several expressions, other
+/// variables) or does not parse.
 Field compile_expression(const std::string& text, const std::string& pointer, Variables variables);
 
 }  // namespace signorini::api

@@ -36,7 +36,7 @@ int depth(std::string_view text) {
   return deepest_level;
 }
 
-/// Whether a `=` stands alone, not in `==`, `<=`, `>=` or `!=`. muParser would assign to the variable.
+/// Whether a `=` stands alone, not in `==`, `<=`, `>=` or `!=`.
 bool assigns(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool pair = i + 1 < text.size() && text[i + 1] == '=';
@@ -101,18 +101,6 @@ std::vector<std::string_view> names_in(std::string_view text) {
     }
   }
   return names;
-}
-
-std::string without_blanks_before_arguments(std::string_view text) {
-  std::string tidy;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::size_t next = std::min(text.find_first_not_of(blanks, i), text.size());
-    const bool before_arguments =
-        next < text.size() && text[next] == '(' && !tidy.empty() && continues_name(tidy.back());
-    if (is_blank(text[i]) && before_arguments) continue;
-    tidy += text[i];
-  }
-  return tidy;
 }
 
 }  // namespace signorini::api

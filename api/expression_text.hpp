@@ -13,7 +13,4 @@ std::string text_fault(std::string_view text);
 /// The names (of variables, functions, constants) in an expression, as often as they stand there.
 std::vector<std::string_view> names_in(std::string_view text);
 
-/// `sin (x)` as `sin(x)`: muParser knows a function only where its parenthesis follows at once.
-std::string without_blanks_before_arguments(std::string_view text);
-
 }  // namespace signorini::api

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "api/gmsh_text.hpp"
@@ -103,13 +102,14 @@ class Version2 {
   }
 
  private:
-  /// The first tag is the physical group, 0 for none; the others do not matter here.
+  /// The first tag is the physical group, 0 for none, its sign the orientation in it; the others do not
+  /// matter here: the geometric entity, and the number of partitions with their numbers.
   static std::vector<Tag> read_groups(GmshText& text) {
     const std::size_t tags = text.count("the number of tags", 2);
     Tag group = 0;
     for (std::size_t i = 0; i < tags; ++i) {
       const Tag tag = text.integer("a tag");
-      if (i == 0) group = tag;
+      if (i == 0) group = std::abs(tag);
     }
     return group == 0 ? std::vector<Tag>() : std::vector<Tag>{group};
   }
@@ -210,7 +210,8 @@ Contents read_sections(GmshText& text) {
     if (!seen.insert(section).second && (section == "$Nodes" || section == "$Elements"))
       text.fail("there is a second section " + std::string(section));
     const std::string end = "$End" + std::string(section.substr(1));
-    if (section == "$PartitionedEntities") text.fail("a partitioned mesh is not supported");
+    if (section == "$PartitionedEntities")
+      text.fail("a partitioned mesh is not supported; save it without partitions, or as version 2.2");
     if (section == "$PhysicalNames") {
       read_names(text, contents);
     } else if (section == "$Entities" && Version::has_entities) {
@@ -269,10 +270,14 @@ class Nodes {
       if (number_[i] < 0) continue;
       number_[i] = static_cast<int>(points.size());
       points.push_back(nodes_[i].x);
+      used_.push_back(i);
     }
     check_height();
     return points;
   }
+
+  /// The z of all nodes in use, but for rounding.
+  double height() const { return nodes_[used_[0]].z; }
 
   template <std::size_t size>
   std::array<int, size> numbers(const Element<size>& element) const {
@@ -295,24 +300,36 @@ class Nodes {
     return found->second;
   }
 
+  /// How far the nodes in use lie apart along a coordinate.
+  template <typename Coordinate>
+  double extent(const Coordinate& coordinate) const {
+    const auto [least, most] =
+        std::ranges::minmax(used_, {}, [&](std::size_t i) { return coordinate(nodes_[i]); });
+    return coordinate(nodes_[most]) - coordinate(nodes_[least]);
+  }
+
   void check_height() const {
-    std::optional<Node> first;
-    double extent = 0;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (number_[i] < 0) continue;
-      if (!first) first = nodes_[i];
-      extent = std::max(extent, (nodes_[i].x - first->x).norm());
-    }
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (number_[i] >= 0 && std::abs(nodes_[i].z - first->z) > 1e-9 * extent)
-        GmshText::fail_at(nodes_[i].text_line, "the z of node " + std::to_string(nodes_[i].tag) + " is " +
-                                                   shortest(nodes_[i].z) + ", that of others " +
-                                                   shortest(first->z) + "; the mesh must be plane");
+    const double x = extent([](const Node&node) { return node.x.x(); }),
+                 y = extent([](const Node&node) { return node.x.y(); }),
+                 z = extent([](const Node&node) { return node.z; });
+    constexpr double rounding = 1e-9;
+    if (z <= rounding * std::max(x, y)) return;
+    const std::size_t other = *std::ranges::find_if(
+        used_, [&](std::size_t i) { return std::abs(nodes_[i].z - height()) > rounding * std::max(x, y); });
+    const bool lies_in_another_plane = std::min(x, y) <= rounding * z;
+    GmshText::fail_at(
+        nodes_[other].text_line,
+        "the z of node " + std::to_string(nodes_[other].tag) + " is " + shortest(nodes_[other].z) +
+            ", that of others " + shortest(height()) + "; " +
+            (lies_in_another_plane
+                 ? std::string("the mesh lies in a plane along z: turn it into the plane of x and y")
+                 : std::string("the mesh must be plane, with the same z everywhere")));
   }
 
   std::vector<Node> nodes_;
   std::vector<std::pair<Tag, std::size_t>> by_tag_;
   std::vector<int> number_;  // of each node in use, else -1
+  std::vector<std::size_t> used_;
 };
 
 }  // namespace
@@ -330,6 +347,9 @@ MeshData parse_gmsh(std::string_view text) {
   for (const auto& element : contents.triangles) nodes.use(element);
   MeshData data;
   data.points = nodes.take_numbers();
+  if (nodes.height() != 0)
+    data.notes.push_back("the mesh of the file lies at z = " + shortest(nodes.height()) +
+                         "; only x and y were read");
   for (const auto& element : contents.triangles) data.triangles.push_back(nodes.numbers(element));
   std::map<std::string, std::size_t> parts;
   for (const auto& [group, element] : contents.lines) {

@@ -37,14 +37,69 @@ Domain read_rectangle(const Object& object) {
   return rectangle;
 }
 
+/// The arc from a vertex to the next one; nothing if it has no centre.
+std::optional<Arc> read_arc(const Value& value, int ring, int vertex) {
+  const auto object = value.object();
+  if (!object) return std::nullopt;
+  object->allow({"centre", "long"}, "an arc");
+  const auto member = object->require("centre", "the centre of the arc's circle, [x, y]");
+  const auto centre = member ? read_pair(*member, "a point, [x, y]", false) : std::nullopt;
+  const auto is_long = object->find("long");
+  if (is_long && !is_long->json().is_boolean()) is_long->unexpected("true or false");
+  if (!centre) return std::nullopt;
+  return Arc{ring, vertex, *centre, is_long && is_long->json() == true};
+}
+
+/// The vertices of a ring; its arcs go to those of the polygon.
+std::vector<Point> read_ring(const Value& value, int ring, Polygon& polygon) {
+  std::vector<Point> vertices;
+  for (const Value& element : value.list("an array of points, [[x, y], ...]")) {
+    Point at = Point::Zero();
+    if (element.json().is_object()) {
+      const Object vertex = *element.object();
+      vertex.allow({"at", "arc"}, "a vertex");
+      if (const auto member = vertex.require("at", "the vertex, [x, y]"))
+        at = read_pair(*member, "a point, [x, y]", false).value_or(at);
+      if (const auto member = vertex.find("arc"))
+        if (const auto arc = read_arc(*member, ring, static_cast<int>(vertices.size())))
+          polygon.arcs.push_back(*arc);
+    } else {
+      at = read_pair(element, R"(a point, [x, y], or {"at": [x, y], "arc": {"centre": [x, y]}})", false)
+               .value_or(at);
+    }
+    vertices.push_back(at);
+  }
+  return vertices;
+}
+
+/// A hole that is a circle: its rightmost point, from which an arc leads back to it.
+std::vector<Point> read_circle(const Value& value, int ring, Polygon& polygon) {
+  const auto hole = value.object();
+  hole->allow({"circle"}, "a hole that is no ring");
+  const auto member = hole->require("circle", R"({"centre": [x, y], "radius": r})");
+  const auto circle = member ? member->object() : std::nullopt;
+  if (!circle) return {Point::Zero()};
+  circle->allow({"centre", "radius"}, "a circle");
+  const auto centre = circle->require("centre", "its centre, [x, y]");
+  const auto radius = circle->require("radius", "its radius, a positive length");
+  const auto at = centre ? read_pair(*centre, "a point, [x, y]", false) : std::nullopt;
+  const auto length = radius ? radius->positive() : std::nullopt;
+  if (!at || !length) return {Point::Zero()};
+  polygon.arcs.push_back({ring, 0, *at, false});
+  return {Point(at->x() + *length, at->y())};
+}
+
 Domain read_polygon(const Object& object) {
   Polygon polygon;
   object.allow({"type", "vertices", "holes", "sides"}, "a polygon");
   if (const auto vertices = object.require("vertices", "the outer ring, [[x, y], ...]"))
-    polygon.vertices = read_points(*vertices);
+    polygon.vertices = read_ring(*vertices, 0, polygon);
   if (const auto holes = object.find("holes"))
-    for (const Value& hole : holes->list("an array of rings, each an array of points"))
-      polygon.holes.push_back(read_points(hole));
+    for (const Value& hole : holes->list("an array of holes, each a ring of points or a circle")) {
+      const int ring = static_cast<int>(polygon.holes.size()) + 1;
+      polygon.holes.push_back(hole.json().is_object() ? read_circle(hole, ring, polygon)
+                                                      : read_ring(hole, ring, polygon));
+    }
   if (const auto sides = object.find("sides"))
     for (const Value& side : sides->list("an array of part names, one an edge of the outer ring"))
       polygon.sides.push_back(side.text(longest_part_name).value_or(""));

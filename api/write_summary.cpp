@@ -1,6 +1,10 @@
 #include "api/result_members.hpp"
 
 namespace signorini::api {
+
+// A writer of a whole struct begins with a structured binding, so that it does not compile while a member is
+// missing.
+
 namespace {
 
 void write_notes(DocumentWriter& out, const std::vector<std::string>& notes) {
@@ -10,21 +14,23 @@ void write_notes(DocumentWriter& out, const std::vector<std::string>& notes) {
 }
 
 void write_residuals(DocumentWriter& out, const Residuals& residuals) {
+  const auto& [equilibrium, constitutive, penetration, tension, complementarity, symmetry] = residuals;
   out.begin_object()
-      .member("equilibrium", residuals.equilibrium)
-      .member("constitutive", residuals.constitutive)
-      .member("penetration", residuals.penetration)
-      .member("tension", residuals.tension)
-      .member("complementarity", residuals.complementarity)
-      .member("symmetry", residuals.symmetry)
+      .member("equilibrium", equilibrium)
+      .member("constitutive", constitutive)
+      .member("penetration", penetration)
+      .member("tension", tension)
+      .member("complementarity", complementarity)
+      .member("symmetry", symmetry)
       .end_object();
 }
 
 void write_contact_sums(DocumentWriter& out, const ContactSummary& contact) {
+  const auto& [force, max_pressure, length] = contact;
   out.begin_object()
-      .member("force", contact.force)
-      .member("max_pressure", contact.max_pressure)
-      .member("length", contact.length)
+      .member("force", force)
+      .member("max_pressure", max_pressure)
+      .member("length", length)
       .end_object();
 }
 
@@ -43,6 +49,17 @@ void write_reactions(DocumentWriter& out, const std::vector<Reaction>& parts) {
   out.end_object();
 }
 
+void write_bound_parts(DocumentWriter& out, const ErrorBound::Parts& parts) {
+  const auto& [constitutive, contact, oscillation, equilibration, asymmetry] = parts;
+  out.begin_object()
+      .member("constitutive", constitutive)
+      .member("contact", contact)
+      .member("oscillation", oscillation)
+      .member("equilibration", equilibration)
+      .member("asymmetry", asymmetry)
+      .end_object();
+}
+
 void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
   out.begin_object()
       .member("value", bound.value)
@@ -54,14 +71,7 @@ void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
     out.end_array();
   }
   out.member("energy_lower", bound.energy_lower).member("energy_upper", bound.energy_upper);
-  out.key("parts")
-      .begin_object()
-      .member("constitutive", bound.parts.constitutive)
-      .member("contact", bound.parts.contact)
-      .member("oscillation", bound.parts.oscillation)
-      .member("equilibration", bound.parts.equilibration)
-      .member("asymmetry", bound.parts.asymmetry)
-      .end_object();
+  write_bound_parts(out.key("parts"), bound.parts);
   out.end_object();
 }
 
@@ -82,13 +92,14 @@ void write_levels(DocumentWriter& out, const std::vector<Level>& levels) {
 }
 
 void write_timings(DocumentWriter& out, const Timings& timings) {
+  const auto& [mesh, assemble, factorize, iterate, certify, total] = timings;
   out.begin_object()
-      .member("mesh", timings.mesh)
-      .member("assemble", timings.assemble)
-      .member("factorize", timings.factorize)
-      .member("iterate", timings.iterate)
-      .member("certify", timings.certify)
-      .member("total", timings.total)
+      .member("mesh", mesh)
+      .member("assemble", assemble)
+      .member("factorize", factorize)
+      .member("iterate", iterate)
+      .member("certify", certify)
+      .member("total", total)
       .end_object();
 }
 
@@ -111,31 +122,32 @@ void write_entry_summary(DocumentWriter& out, const SweepEntry& entry) {
 }  // namespace
 
 void write_unknowns(DocumentWriter& out, const Unknowns& unknowns) {
+  const auto& [stress, displacement, contact, rotation] = unknowns;
   out.begin_object()
-      .member("stress", unknowns.stress)
-      .member("displacement", unknowns.displacement)
-      .member("contact", unknowns.contact)
-      .member("rotation", unknowns.rotation)
+      .member("stress", stress)
+      .member("displacement", displacement)
+      .member("contact", contact)
+      .member("rotation", rotation)
       .end_object();
 }
 
 void write_summary(DocumentWriter& out, const Summary& summary) {
-  out.begin_object().member("outcome", name(summary.outcome));
-  if (!summary.advice.empty()) out.member("advice", summary.advice);
-  if (!summary.notes.empty()) write_notes(out.key("notes"), summary.notes);
-  out.member("method", summary.method)
-      .member("iterations", summary.iterations)
-      .member("triangles", summary.triangles);
-  write_unknowns(out.key("unknowns"), summary.unknowns);
-  out.member("energy", summary.energy);
-  write_residuals(out.key("residuals"), summary.residuals);
-  write_contact_sums(out.key("contact"), summary.contact);
-  write_reactions(out.key("parts"), summary.parts);
-  out.member("reused", summary.reused);
-  if (summary.error_bound) write_error_bound(out.key("error_bound"), *summary.error_bound);
-  if (!summary.levels.empty()) write_levels(out.key("levels"), summary.levels);
-  write_timings(out.key("timings"), summary.timings);
-  out.member("peak_memory_bytes", summary.peak_memory_bytes).end_object();
+  const auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
+               error_bound, parts, levels, reused, timings, peak_memory_bytes] = summary;
+  out.begin_object().member("outcome", name(outcome));
+  if (!advice.empty()) out.member("advice", advice);
+  if (!notes.empty()) write_notes(out.key("notes"), notes);
+  out.member("method", method).member("iterations", iterations).member("triangles", triangles);
+  write_unknowns(out.key("unknowns"), unknowns);
+  out.member("energy", energy);
+  write_residuals(out.key("residuals"), residuals);
+  write_contact_sums(out.key("contact"), contact);
+  write_reactions(out.key("parts"), parts);
+  out.member("reused", reused);
+  if (error_bound) write_error_bound(out.key("error_bound"), *error_bound);
+  if (!levels.empty()) write_levels(out.key("levels"), levels);
+  write_timings(out.key("timings"), timings);
+  out.member("peak_memory_bytes", peak_memory_bytes).end_object();
 }
 
 void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact) {

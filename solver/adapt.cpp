@@ -6,7 +6,7 @@
 #include "certify/mark.hpp"
 #include "condensed_problem.hpp"
 #include "mesh/bisect.hpp"
-#include "stable_mesh.hpp"
+#include "requested_mesh.hpp"
 
 namespace signorini {
 namespace {
@@ -18,13 +18,15 @@ std::string in_words(double number) {
   return text.str();
 }
 
-/// The answer of the finest level so far, and the records of all.
+/// The answers of the finest level so far and of the one with the smallest relative bound, and the records of
+/// all.
 class Levels {
  public:
   Levels(const Adaptive& goal, Progress& progress) : goal_(goal), progress_(progress) {}
 
   bool empty() const { return levels_.empty(); }
-  const Solution& finest() const { return finest_; }
+  /// To be asked for once there is one.
+  const Solution& finest() const { return *finest_; }
   bool meets_tolerance() const { return levels_.back().relative <= goal_.tolerance; }
 
   void add(Solution solution) {
@@ -38,39 +40,58 @@ class Levels {
                            summary.error_bound->value, summary.error_bound->relative, summary.iterations, 0},
                           solution));
     history_.insert(history_.end(), solution.history.begin(), solution.history.end());
-    finest_ = std::move(solution);
+    finest_ = std::make_shared<Solution>(std::move(solution));
+    if (best_level_ < 0 || levels_.back().relative < levels_[best_level_].relative) {
+      best_ = finest_;
+      best_level_ = static_cast<int>(levels_.size()) - 1;
+    }
   }
 
-  /// Whether four times the triangles have not lowered the bound.
+  /// Whether four times the triangles have not lowered the bound, once it tells that there is a solution to
+  /// be seen: on the coarsest meshes it may rise before it falls.
   bool stagnate() const {
     const Level& last = levels_.back();
     return std::ranges::any_of(levels_, [&](const Level& level) {
-      return 4 * level.triangles <= last.triangles && level.relative <= last.relative;
+      return 4 * level.triangles <= last.triangles && level.relative < 1 && level.relative <= last.relative;
     });
   }
 
   Solution end(Outcome outcome, std::string advice = {}) {
-    Summary& summary = finest_.summary;
+    Summary& summary = best_->summary;
     summary.outcome = outcome;
     summary.advice = std::move(advice);
     summary.iterations = static_cast<int>(history_.size());
     summary.timings = timings(progress_);
     summary.levels = std::move(levels_);
-    finest_.history = std::move(history_);
-    return std::move(finest_);
+    best_->history = std::move(history_);
+    return std::move(*best_);
   }
 
-  /// The finest level as an answer that does not meet the tolerance.
+  /// The best level as an answer that does not meet the tolerance.
   Solution end_above_tolerance(Outcome outcome, const std::string& why) {
-    return end(outcome, "the relative error bound is " + in_words(levels_.back().relative) + " with " +
-                            std::to_string(levels_.back().triangles) + " triangles, and " +
-                            in_words(goal_.tolerance) + " was asked for; " + why);
+    return end(outcome, "the relative error bound is " + bound_and_triangles(levels_[best_level_]) +
+                            of_best_level() + ", and " + in_words(goal_.tolerance) + " was asked for; " +
+                            why);
   }
 
  private:
+  static std::string bound_and_triangles(const Level& level) {
+    return in_words(level.relative) + " with " + std::to_string(level.triangles) + " triangles";
+  }
+
+  /// Nothing if it is the last one.
+  std::string of_best_level() const {
+    const Level& best = levels_[best_level_];
+    const Level& last = levels_.back();
+    if (best.number == last.number) return "";
+    return " on level " + std::to_string(best.number) + ", the best of " + std::to_string(last.number) +
+           ", while the last one has " + bound_and_triangles(last);
+  }
+
   const Adaptive& goal_;
   Progress& progress_;
-  Solution finest_;
+  std::shared_ptr<Solution> finest_, best_;  // often the same
+  int best_level_ = -1;
   std::vector<Level> levels_;
   std::vector<Iteration> history_;
 };
@@ -90,27 +111,47 @@ Eigen::VectorXd clearance_near(const std::vector<ContactPart>& coarse, const Dis
   return start;
 }
 
-Solution solve_level(const Problem& problem, const std::shared_ptr<const Mesh>& mesh,
-                     const Solution& coarser, const Settings& settings, Progress& progress) {
+Solution solve_level(const Problem& problem, const std::shared_ptr<const Mesh>& mesh, const Levels& coarser,
+                     const Settings& settings, Progress& progress) {
   CondensedProblem condensed(problem, mesh, progress);
-  return condensed.solve(settings, progress, clearance_near(coarser.contact, condensed.discretization()));
+  if (coarser.empty()) return condensed.solve(settings, progress, {});
+  return condensed.solve(settings, progress,
+                         clearance_near(coarser.finest().contact, condensed.discretization()));
 }
 
 std::shared_ptr<const Mesh> first_mesh(const Problem& problem, Progress& progress) {
   const Mesh mesh = *requested_mesh(problem, progress);
-  const int most = problem.mesh.adaptive->max_triangles;
-  if (mesh.triangles.size() > static_cast<std::size_t>(most))
-    throw InvalidProblem({{"/mesh/adaptive/max_triangles",
-                           "the mesh to start from has " + std::to_string(mesh.triangles.size()) +
-                               " triangles already: raise it, or start from a coarser mesh"}});
+  require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));
   return std::make_shared<const Mesh>(with_longest_edges_first(mesh));
 }
 
-std::shared_ptr<const Mesh> finer_mesh(const Mesh& asked, const Solution& solution) {
-  const std::vector<int> marked = mark(solution.error_squares);
-  const bool was_mended = asked.triangles.size() != solution.mesh.triangles.size();
-  return std::make_shared<const Mesh>(
-      bisect(was_mended ? with_longest_edges_first(solution.mesh) : solution.mesh, marked));
+/// The shares of the parts of triangles: a part in n of a triangle has that in n² of its square, as where the
+/// error is h. Where it falls faster, or near a corner slower, the next level will tell.
+Eigen::VectorXd foreseen(const Eigen::VectorXd& shares, const std::vector<int>& parents) {
+  Eigen::VectorXd parts = Eigen::VectorXd::Zero(shares.size()), own(parents.size());
+  for (const int parent : parents) ++parts[parent];
+  for (std::size_t t = 0; t < parents.size(); ++t)
+    own[static_cast<Eigen::Index>(t)] = shares[parents[t]] / (parts[parents[t]] * parts[parents[t]]);
+  return own;
+}
+
+/// The largest shares in the square of the bound are refined, as far as they are foreseen to fall, until the
+/// square will have fallen to less than a third or the triangles have grown by half, or would be too many. To
+/// mark little and often grades the mesh as finely as many levels would, for the price of few.
+std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, std::size_t most) {
+  constexpr double bulk = 0.2, fall = 0.3, growth = 1.5;
+  Mesh mesh = solution.mesh;
+  Eigen::VectorXd shares = solution.error_squares;
+  const double enough = growth * static_cast<double>(mesh.triangles.size()), little = fall * shares.sum();
+  for (bool first = true;; first = false) {
+    std::vector<int> parents;
+    Mesh finer = bisect(mesh, mark(shares, bulk), parents);
+    if (!first && finer.triangles.size() > most) break;
+    shares = foreseen(shares, parents);
+    mesh = std::move(finer);
+    if (static_cast<double>(mesh.triangles.size()) >= enough || shares.sum() <= little) break;
+  }
+  return std::make_shared<const Mesh>(std::move(mesh));
 }
 
 Solution refine_until_met(const Problem& problem, const Settings& settings, Levels& levels,
@@ -118,7 +159,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
   const auto most = static_cast<std::size_t>(problem.mesh.adaptive->max_triangles);
   std::shared_ptr<const Mesh> mesh = first_mesh(problem, progress);
   for (;;) {
-    Solution solution = solve_level(problem, mesh, levels.finest(), settings, progress);
+    Solution solution = solve_level(problem, mesh, levels, settings, progress);
     const auto [outcome, advice] = std::pair(solution.summary.outcome, solution.summary.advice);
     if (outcome == Outcome::converged || levels.empty()) levels.add(std::move(solution));
     if (outcome != Outcome::converged) return levels.end_above_tolerance(outcome, advice);
@@ -128,11 +169,11 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           Outcome::tolerance_not_met,
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
-    mesh = finer_mesh(*mesh, levels.finest());
+    mesh = finer_mesh(levels.finest(), most);
     if (mesh->triangles.size() > most)
-      return levels.end_above_tolerance(
-          Outcome::tolerance_not_met, "the next mesh would have " + std::to_string(mesh->triangles.size()) +
-                                          ": raise mesh.adaptive.max_triangles or its tolerance");
+      return levels.end_above_tolerance(Outcome::tolerance_not_met,
+                                        "the next mesh would have " + std::to_string(mesh->triangles.size()) +
+                                            ": raise mesh.adaptive.max_triangles or its tolerance");
   }
 }
 

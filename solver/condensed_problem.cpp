@@ -3,23 +3,28 @@
 #include "contact/accelerated_uzawa.hpp"
 #include "contact/complete.hpp"
 #include "contact/rigid_motions.hpp"
-#include "stable_mesh.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
+
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
-                             const Eigen::VectorXd& start) {
+                             const MeanStress& mean_stress, const Eigen::VectorXd& start) {
   if (contact.size() == 0) return {};
   if (const auto* exact = std::get_if<ActiveSet>(&method))
     return active_set(contact, *exact, progress, start);
-  return accelerated_uzawa(contact, std::get<AcceleratedUzawa>(method), progress, start);
+  return accelerated_uzawa(contact, std::get<AcceleratedUzawa>(method), progress, mean_stress, start);
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,
                                    Progress& progress)
-    : reused_(false) {
-  on_stable_mesh(problem, std::move(mesh),
-                 [&](const std::shared_ptr<const Mesh>& stable) { make(problem, stable, progress); });
+    : reused_(false), discretization_(std::make_unique<const Discretization>(problem, *mesh)) {
+  const bool held = held_by_contact_alone(*discretization_);
+  progress.enter(Phase::assemble);
+  const HybridSystem system = assemble(*discretization_, progress);
+  progress.enter(Phase::factorize);
+  operator_ = std::make_shared<const Operator>(std::move(mesh), discretization_->clearance, system.matrix,
+                                               held, progress);
+  condensed_ = std::make_unique<CondensedContact>(*operator_, system.right, progress);
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept,
@@ -32,25 +37,24 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
       std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
 }
 
-void CondensedProblem::make(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress) {
-  discretization_ = std::make_unique<const Discretization>(problem, *mesh);
-  const bool held = held_by_contact_alone(*discretization_);
-  progress.enter(Phase::assemble);
-  const HybridSystem system = assemble(*discretization_, progress);
-  progress.enter(Phase::factorize);
-  operator_ = std::make_shared<const Operator>(std::move(mesh), discretization_->clearance, system.matrix,
-                                               held, progress);
-  condensed_ = std::make_unique<CondensedContact>(*operator_, system.right, progress);
-}
-
 Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start) {
   progress.enter(Phase::iterate);
-  const ContactResult found = find_clearance(contact(), settings.method, progress, start);
-  progress.found();
   // The Uzawa iteration leaves its clearances where its tolerance ended it.
   const bool exact = std::holds_alternative<ActiveSet>(settings.method);
-  Completed all = complete(*discretization_, *condensed_, found.clearance,
-                           exact ? open_unknowns(found.clearance) : std::vector<int>{}, progress);
+  Completed all;
+  Eigen::VectorXd completed;
+  const auto complete_for = [&](const Eigen::VectorXd& clearance) {
+    progress.found();
+    all = complete(*discretization_, *condensed_, clearance,
+                   exact ? open_unknowns(clearance) : std::vector<int>{}, progress);
+    completed = clearance;
+  };
+  const auto mean_stress_for = [&](const Eigen::VectorXd& clearance) {
+    complete_for(clearance);
+    return mean_stress(*discretization_, all.fields.stress, all.fields.displacement);
+  };
+  const ContactResult found = find_clearance(contact(), settings.method, progress, mean_stress_for, start);
+  if (completed.size() == 0 || completed != found.clearance) complete_for(found.clearance);
   Fields fields{std::move(all.fields.stress), std::move(all.fields.displacement),
                 all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling),
                 found.outcome};

@@ -4,22 +4,23 @@
 
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
+#include "contact/residuals.hpp"
 #include "problem/settings.hpp"
 #include "summarize.hpp"
 
 namespace signorini {
 
 /// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
-/// begins from the start, clearances ≥ 0, or from 0 if there is none.
+/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `mean_stress` see
+/// accelerated_uzawa().
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
-                             const Eigen::VectorXd& start = {});
+                             const MeanStress& mean_stress, const Eigen::VectorXd& start = {});
 
 /// A problem with everything but the contact unknowns eliminated, by an operator that was kept or is made.
 class CondensedProblem {
  public:
-  /// Makes the operator on the mesh, which is mended where the spaces are not stable on it, or takes one that
-  /// was kept; and takes one forward solve. Throws Cancelled, SolveError and what Cholesky throws. The
-  /// problem must outlive it.
+  /// Makes the operator on the mesh, or takes one that was kept; and takes one forward solve. Throws
+  /// Cancelled, SolveError and what Cholesky throws. The problem must outlive it.
   CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
   CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
 
@@ -32,8 +33,6 @@ class CondensedProblem {
   Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {});
 
  private:
-  void make(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
-
   std::shared_ptr<const Operator> operator_;
   bool reused_;
   std::unique_ptr<const Discretization> discretization_;

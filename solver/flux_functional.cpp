@@ -29,7 +29,7 @@ double FluxFunctional::operator()(const Discretization& problem, const Eigen::Ma
 std::vector<FluxFunctional> reactions_on(const Discretization& problem, const BoundaryPart& part) {
   const int d = problem.spaces().components, order = problem.spaces().order;
   std::vector<FluxFunctional> reactions(d == 1 ? 1 : 3);
-  const TractionField traction(problem.problem, problem.mesh);
+  const TractionField& traction = problem.traction;
   for (const int edge : part.edges) {
     const int t = triangle_at(problem, edge), e = problem.mesh.local_edge(t, edge);
     const auto corners = problem.mesh.corners(t);

@@ -14,12 +14,19 @@
 
 namespace signorini {
 
-/// How a solve ended. The last two are for meshes that refine themselves, which have an answer of the meshes
-/// before.
-enum class Outcome { converged, iteration_limit, time_limit, diverged, tolerance_not_met, cancelled };
+/// How a solve ended. `tolerance_not_met` and `cancelled` are for meshes that refine themselves, which have
+/// an answer of the meshes before. Stored as numbers: a new one ends the list.
+enum class Outcome {
+  converged,
+  iteration_limit,
+  time_limit,
+  diverged,
+  tolerance_not_met,
+  cancelled,
+  stalled  ///< the method met its own criterion, but the residuals say that this is no answer
+};
 
-/// The name of the outcome: `converged`, `iteration_limit`, `time_limit`, `diverged`, `tolerance_not_met`,
-/// `cancelled`.
+/// `converged`, `iteration_limit` and so on, the name as it stands above.
 const char* name(Outcome outcome);
 
 /// The discrete fields on one part of the contact boundary, one row a contact edge (its midpoint, P0) or
@@ -28,8 +35,9 @@ struct ContactPart {
   std::string name;
   std::vector<Point> points;
   std::vector<double> clearance;  ///< λ = g − u_n ≥ 0, a length
-  /// −σ_n, <−σ_hn, φ_i> / <1, φ_i> for the basis function φ_i of the row. At a node shared with a fixed
-  /// part it holds the support's reaction too and may be negative if the node touches, and is 0 if not.
+  /// −σ_n, <−σ_hn, φ_i> / <1, φ_i> for the basis function φ_i of the row, or for the sum of those that touch
+  /// in the same node of an arc. At a node shared with a fixed part it holds the support's reaction too and
+  /// may be negative if the node touches, and is 0 if not.
   std::vector<double> pressure;
   std::vector<double> gap;     ///< g
   std::vector<double> weight;  ///< <1, φ_i>, the length that the row stands for

@@ -4,7 +4,7 @@
 #include "condensed_problem.hpp"
 #include "contact/paper_uzawa.hpp"
 #include "contact/rigid_motions.hpp"
-#include "stable_mesh.hpp"
+#include "requested_mesh.hpp"
 #include "sweep.hpp"
 
 namespace signorini {
@@ -24,9 +24,8 @@ Solution iterate(const Discretization& problem, const PaperUzawa& method, const 
 }
 
 Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
-  return on_stable_mesh(problem, requested_mesh(problem, progress), [&](const std::shared_ptr<const Mesh>& mesh) {
-    return iterate(Discretization(problem, *mesh), std::get<PaperUzawa>(settings.method), settings, progress);
-  });
+  const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
+  return iterate(Discretization(problem, *mesh), std::get<PaperUzawa>(settings.method), settings, progress);
 }
 
 /// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
@@ -57,8 +56,9 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   const bool keeps = cache && !used;
   Solution solution;
   {
-    CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
-                                      : CondensedProblem(problem, requested_mesh(problem, progress), progress);
+    CondensedProblem condensed = used
+                                     ? CondensedProblem(problem, used, progress)
+                                     : CondensedProblem(problem, requested_mesh(problem, progress), progress);
     used = condensed.used_operator();
     if (keeps) cache->keep(problem.operator_key, used);
     solution = condensed.solve(settings, progress);
@@ -95,9 +95,8 @@ Solution solve(const Problem& problem, const std::vector<Variation>& sweep, cons
   } catch (const NotPositiveDefinite& failure) {
     throw SolveError(
         std::string(failure.what()) +
-        ": the stiffness varies too strongly over the mesh, its triangles are too thin, or it is too "
-        "coarse for the pair of spaces to be stable; check the material and its units, the sizes of "
-        "the domain, or refine");
+        ": the stiffness varies too strongly over the mesh, or its triangles are too thin; check the "
+        "material and its units, and the sizes of the domain");
   } catch (const OutOfMemory& failure) {
     throw SolveError(std::string(failure.what()) + ": use a coarser mesh or a machine with more memory");
   }

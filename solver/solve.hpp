@@ -22,11 +22,12 @@ struct Estimate {
 
 /// Why a mesh cannot refine itself in the paper's iteration.
 inline constexpr const char* paper_form_needs_one_mesh =
-    "the paper's iteration has a step that suits one mesh only: leave solver.rho and solver.augmentation out, "
+    "the paper's iteration has a step that suits one mesh only: leave solver.rho and solver.augmentation "
+    "out, "
     "or use active_set";
 
-/// Sizes of the problem, exactly; memory and time, roughly. For a mesh that refines itself all of it is for the
-/// largest mesh that it may become, and the sizes are rough too.
+/// Sizes of the problem, exactly; memory and time, roughly. For a mesh that refines itself all of it is for
+/// the largest mesh that it may become, and the sizes are rough too.
 Estimate estimate(const Problem& problem);
 
 /// The same for every run of a study, in the order in which they are solved. A mesh may take long to make: it
@@ -36,6 +37,12 @@ std::vector<Estimate> estimate(const Problem& problem, const Study& study,
 
 /// Every fault of the problem, and where the method cannot do what it asks for.
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);
+
+/// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, and a body
+/// that cannot come to rest. On a mesh of more than 100,000 triangles it takes a coarse one for it, and
+/// nothing if the loads vary. The problem has no fault that validate() sees. Throws InvalidProblem and
+/// SolveError.
+void require_rest(const Problem& problem);
 
 /// Solves Problem 4.1 of the paper for the problem.
 ///

@@ -1,14 +1,23 @@
 #include "summarize.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
 
 #include <sys/resource.h>
 
 #include "certify/certificate.hpp"
 #include "contact/residuals.hpp"
+#include "curve_notes.hpp"
 #include "fem/per_shape.hpp"
 #include "fem/reconstruct.hpp"
 #include "flux_functional.hpp"
+#include "outcome.hpp"
 
 namespace signorini {
 namespace {
@@ -37,8 +46,39 @@ Eigen::VectorXd contact_pressure(const ClearanceSpace& space, const Eigen::Vecto
   return pressure;
 }
 
+namespace {
+
+/// The closed rows that share a node of an arc get the pressure against the whole hat function of the node.
+///
+/// The direction of contact is that of each chord, and turns at its ends by the angle h/R; the arc's turns
+/// steadily. So the chords hold a body that slides by u_t back at one end and push it on at the other, by
+/// u_t h/2R over the length h: a pressure of E u_t/R that falls along every chord, however short, and is 0 in
+/// the mean.
+Eigen::VectorXd averaged_on_arcs(const ClearanceSpace& space, const Mesh& mesh,
+                                 const Eigen::VectorXd& clearance, Eigen::VectorXd pressure) {
+  std::map<std::pair<int, int>, std::set<int>> rows_at;  // by part and node
+  for (const ContactEdge& contact : space.edges)
+    for (int k = 0; k < 2; ++k) {
+      const int row = contact.rows[k];
+      if (mesh.circle_of(contact.edge) >= 0 && contact.rows[0] != contact.rows[1] && clearance[row] <= 0)
+        rows_at[{space.rows[row].part, mesh.edges[contact.edge][k]}].insert(row);
+    }
+  for (const auto& [node, rows] : rows_at) {
+    double force = 0, weight = 0;
+    for (const int row : rows) {
+      force += pressure[row] * space.rows[row].weight;
+      weight += space.rows[row].weight;
+    }
+    for (const int row : rows) pressure[row] = force / weight;
+  }
+  return pressure;
+}
+
+}  // namespace
+
 std::vector<ContactPart> contact_parts(const ClearanceSpace& space, const Mesh& mesh,
-                                       const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure) {
+                                       const Eigen::VectorXd& clearance, const Eigen::VectorXd& by_rows) {
+  const Eigen::VectorXd pressure = averaged_on_arcs(space, mesh, clearance, by_rows);
   std::vector<ContactPart> parts;
   int last = -1;
   for (std::size_t i = 0; i < space.rows.size(); ++i) {
@@ -126,32 +166,34 @@ Unknowns count_unknowns(const Discretization& problem) {
           spaces.rotations() ? static_cast<std::int64_t>(problem.mesh.points.size()) : 0};
 }
 
-}  // namespace
-
-std::string advice(const Settings& settings, Outcome outcome, int iterations) {
-  const std::string after = " after " + std::to_string(iterations) + " iterations";
-  const bool paper = std::holds_alternative<PaperUzawa>(settings.method);
-  const std::string faster =
-      paper ? "use rho and augmentation \"auto\", or active_set" : "raise max_iterations or use active_set";
-  switch (outcome) {
-    case Outcome::converged:
-      return "";
-    case Outcome::iteration_limit:
-      return "the tolerance was not met" + after + ": raise the tolerance, " + faster;
-    case Outcome::time_limit:
-      return "the time limit was reached" + after + ": raise solver.time_limit, or " + faster;
-    case Outcome::tolerance_not_met:
-    case Outcome::cancelled:
-      break;  // said by the loop over meshes that ends so
-    case Outcome::diverged:
-      return "the Uzawa iteration diverged" + after +
-             ": the step rho is too large for this mesh; it must stay below " +
-             "twice the augmentation and below a bound that shrinks with the mesh; lower rho or " + faster;
+/// Below this a bound is rounding, as of a body that is displaced without stress: in the same unit the norm
+/// of strains so small that the displacements have hardly a digit for them.
+double rounding_of_bound(const Discretization& problem, const Solution& solution) {
+  double compliance = std::numeric_limits<double>::infinity();
+  for (int t = 0; t < problem.triangles(); ++t) {
+    const auto c = compliance_at(problem.problem.material, problem.mesh.centroid(t));
+    compliance = std::min(compliance, c.diagonal().minCoeff());
   }
-  return "";
+  return 1e-11 * solution.displacement.lpNorm<Eigen::Infinity>() / std::sqrt(compliance);
 }
 
-namespace {
+/// What must be known before the numbers are used, and what would make them better.
+std::vector<std::string> warnings(const Discretization& problem, const Solution& solution,
+                                  const ErrorBound& bound) {
+  if (bound.relative <= 1 || bound.value <= rounding_of_bound(problem, solution)) return {};
+  const bool converged = solution.summary.outcome == Outcome::converged;
+  std::ostringstream relative;
+  relative << std::setprecision(3) << bound.relative;
+  std::string remedy = "let the iteration converge";
+  if (converged)
+    remedy =
+        "take a finer mesh (mesh.size, mesh.divisions or mesh.refine) or let it refine itself "
+        "(mesh.adaptive)";
+  if (converged && solution.scheme == Scheme::nonconforming)
+    remedy += ", or take the conforming scheme, which follows bending on far fewer triangles";
+  return {"the relative error bound is " + relative.str() +
+          ": the error may be larger than the stress itself, and this answer is worth nothing; " + remedy};
+}
 
 std::int64_t peak_memory_bytes() {
   rusage usage{};
@@ -169,12 +211,6 @@ void refuse_overflow(const Solution& solution) {
 }
 
 }  // namespace
-
-const char* name(Outcome outcome) {
-  static constexpr std::array names{"converged", "iteration_limit",   "time_limit",
-                                    "diverged",  "tolerance_not_met", "cancelled"};
-  return names[static_cast<int>(outcome)];
-}
 
 Timings timings(const Progress& progress) {
   return {progress.seconds_in(Phase::mesh),      progress.seconds_in(Phase::assemble),
@@ -204,19 +240,21 @@ Solution summarize(const Discretization& problem, Fields fields, const Settings&
   const Eigen::VectorXd pressure = contact_pressure(problem, solution.stress);
   solution.contact = contact_parts(problem.clearance, problem.mesh, clearance, pressure);
 
-  summary.outcome = fields.outcome;
+  progress.check();
+  summary.residuals = residuals(solution, clearance, pressure, problem);
+  summary.outcome = judged(fields.outcome, summary.residuals, settings);
   summary.iterations = progress.iterations();
-  summary.advice = advice(settings, fields.outcome, summary.iterations);
+  summary.advice = advice(settings, summary.outcome, summary.iterations);
   summary.method = std::holds_alternative<ActiveSet>(settings.method) ? "active_set" : "uzawa";
   summary.notes = problem.mesh.notes;
+  std::ranges::move(notes_on_curves(problem, clearance), std::back_inserter(summary.notes));
   summary.triangles = problem.triangles();
   summary.unknowns = count_unknowns(problem);
   summary.contact = sum_up(solution.contact);
-  progress.check();
-  summary.residuals = residuals(solution, clearance, pressure, problem);
   progress.enter(Phase::certify);
   Certificate certificate = certify(problem, solution, fields.coupling, progress);
   if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
+    std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(summary.notes));
     summary.error_bound = std::move(certificate.bound);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);

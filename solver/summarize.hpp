@@ -22,17 +22,15 @@ Timings timings(const Progress& progress);
 /// fixed part holds clear of the foundation has none: what acts there is the support's.
 Eigen::VectorXd contact_pressure(const ClearanceSpace& space, const Eigen::VectorXd& forces);
 
-/// Clearance and pressure, an entry a row of the clearance space, by parts.
+/// Clearance and pressure, an entry a row of the clearance space, by parts. Rows that touch in the same node
+/// of an arc have their pressure in common.
 std::vector<ContactPart> contact_parts(const ClearanceSpace& space, const Mesh& mesh,
-                                       const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure);
+                                       const Eigen::VectorXd& clearance, const Eigen::VectorXd& by_rows);
 
 ContactSummary sum_up(const std::vector<ContactPart>& parts);
 
 /// From the values of the part's reactions_on().
 Reaction make_reaction(std::string part, const std::vector<double>& values);
-
-/// Why the method ended like this and what to try; empty if it converged.
-std::string advice(const Settings& settings, Outcome outcome, int iterations);
 
 /// Everything that a solution tells beyond the fields, computed from the fields alone: contact pressures,
 /// residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.

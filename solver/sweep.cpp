@@ -5,6 +5,7 @@
 
 #include "contact/residuals.hpp"
 #include "flux_functional.hpp"
+#include "outcome.hpp"
 
 namespace signorini {
 
@@ -74,6 +75,7 @@ class Sweep::Reference {
       : problem_(std::move(posed)), condensed_(problem_, kept, progress), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact));
+    mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement);
     observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
   }
@@ -91,7 +93,8 @@ class Sweep::Reference {
     if (!grown) return std::nullopt;
     const Eigen::VectorXd shift = of_unknowns(space(), *grown);
     contact_.c = condensed_.contact().c + contact_.s * shift;
-    const ContactResult found = find_clearance(contact_, settings.method, progress);
+    const ContactResult found =
+        find_clearance(contact_, settings.method, progress, [this](const auto&) { return mean_stress_; });
     return entry_for(after, found, found.clearance - shift - clearance_, settings, progress);
   }
 
@@ -125,9 +128,13 @@ class Sweep::Reference {
     const Eigen::VectorXd pressure = contact_pressure(after, forces_on_rows(after, found.clearance, change));
     const Mesh& mesh = condensed_.discretization().mesh;
     SweepEntry entry;
-    entry.outcome = found.outcome;
+    const Residuals left = contact_residuals_of(found.clearance);
+    entry.penetration = left.penetration;
+    entry.tension = left.tension;
+    entry.complementarity = left.complementarity;
+    entry.outcome = judged(found.outcome, left, settings);
     entry.iterations = progress.iterations();
-    entry.advice = advice(settings, found.outcome, entry.iterations);
+    entry.advice = advice(settings, entry.outcome, entry.iterations);
     entry.energy = energy_after(change);
     entry.contact = contact_parts(after, mesh, after.clearance(found.clearance), pressure);
     entry.sums = sum_up(entry.contact);
@@ -136,7 +143,6 @@ class Sweep::Reference {
       for (const AffineForce& force : reactions_[part]) values.push_back(force.after(change));
       entry.parts.push_back(make_reaction(mesh.boundary[part].name, values));
     }
-    add_residuals(found.clearance, entry);
     return entry;
   }
 
@@ -155,21 +161,21 @@ class Sweep::Reference {
     return entry_.energy + change.dot(contact_.s * between - condensed_.contact().c);
   }
 
-  void add_residuals(const Eigen::VectorXd& clearance, SweepEntry& entry) const {
-    const Eigen::VectorXd pressure = contact_.pressure(clearance);
-    const double scale =
-        std::max(pressure.lpNorm<Eigen::Infinity>(),
-                 contact_.pressure(Eigen::VectorXd::Zero(contact_.size())).lpNorm<Eigen::Infinity>());
-    const ContactResiduals left = contact_residuals(clearance, pressure, contact_.weight, scale);
-    entry.penetration = left.penetration;
-    entry.tension = left.tension;
-    entry.complementarity = left.complementarity;
+  Residuals contact_residuals_of(const Eigen::VectorXd& clearance) const {
+    const ContactResiduals left =
+        contact_residuals(clearance, contact_.pressure(clearance), contact_.weight, mean_stress_);
+    Residuals residuals;
+    residuals.penetration = left.penetration;
+    residuals.tension = left.tension;
+    residuals.complementarity = left.complementarity;
+    return residuals;
   }
 
   const Problem problem_;
   CondensedProblem condensed_;
   ContactComplement contact_;  ///< for the gaps of the entry at hand
   Eigen::VectorXd clearance_;
+  double mean_stress_ = 0;  ///< of the variation that was recovered; its entries' residuals are by it
   SweepEntry entry_;
   std::vector<std::vector<AffineForce>> reactions_;  ///< by part
   std::map<std::size_t, AffineForce> held_;          ///< on rows that are no unknowns

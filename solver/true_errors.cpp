@@ -112,7 +112,8 @@ double contact_term(const Problem& problem, const VectorField& u, const Solution
         const double u_n = solution.components == 1
                                ? -u(0, x, normal)
                                : direction.x() * u(0, x, normal) + direction.y() * u(1, x, normal);
-        const double room = std::max(0., contact->gap(x, normal) - u_n);
+        const Mesh::BoundaryPoint on_arc = mesh.on_boundary(edge, s);
+        const double room = std::max(0., contact->gap(on_arc.x, on_arc.normal) - u_n);
         sum += 2 * edge_rule().weights[q] * mesh.length(edge) * found->second(s) * room;
       }
     }

@@ -8,12 +8,14 @@
 #include "server/handlers/intake.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
+#include "solve.hpp"
 
 namespace signorini::server {
 
 Response validate_problem(Service& service, const Request& request) {
   allow_only(request.query, {});
   const Intake intake = take_in(request, service.limits);
+  require_rest(intake.request.problem);
   return document_response(request, 200,
                            [estimate = intake.estimate, runs = intake.runs](api::DocumentWriter& out) {
                              api::write_estimate(out, estimate, runs);

@@ -16,6 +16,8 @@ ProblemDetails details_of(const Summary& summary) {
       return {"cancelled", "The solve was cancelled", summary.advice};
     case Outcome::tolerance_not_met:
       return {"tolerance-not-met", "The error bound does not meet the tolerance", summary.advice};
+    case Outcome::stalled:
+      return {"stalled", "The method stopped before it had an answer", summary.advice};
     case Outcome::diverged:
       return {"diverged", "The method did not converge", summary.advice};
     default:

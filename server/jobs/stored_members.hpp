@@ -1,8 +1,9 @@
 #pragma once
 
-// What of each struct is stored, by the library cereal: one list of members serves writing and reading. A
-// member that is added to a list ends it, under `if (version >= n)`, with n the new version of its class
-// below: results that an earlier version stored are still there.
+// What of each struct is stored, by the library cereal: one list of members serves writing and reading. It
+// begins with a structured binding, so that it does not compile while a member is missing. A member that is
+// added to a list ends it, under `if (version >= n)`, with n the new version of its class below, or that of
+// the next larger one where its own has no version: results that an earlier version stored are still there.
 
 #include <cereal/types/array.hpp>
 #include <cereal/types/optional.hpp>
@@ -37,111 +38,143 @@ namespace signorini {
 
 template <class Archive>
 void serialize(Archive& archive, BoundaryPart& part) {
-  archive(part.name, part.edges);
+  auto& [name, edges] = part;
+  archive(name, edges);
 }
 
 template <class Archive>
+void serialize(Archive& archive, Circle& circle) {
+  auto& [centre, radius] = circle;
+  archive(centre, radius);
+}
+
+/// Its circles and its notes came later and end the list of a solution.
+template <class Archive>
 void serialize(Archive& archive, Mesh& mesh) {
-  archive(mesh.points, mesh.triangles, mesh.boundary, mesh.edges, mesh.triangle_edges, mesh.edge_triangles);
+  auto& [points, triangles, boundary, edges, triangle_edges, edge_triangles, circles, edge_circles, notes] =
+      mesh;
+  archive(points, triangles, boundary, edges, triangle_edges, edge_triangles);
 }
 
 template <class Archive>
 void serialize(Archive& archive, ContactPart& part) {
-  archive(part.name, part.points, part.clearance, part.pressure, part.gap, part.weight, part.open);
+  auto& [name, points, clearance, pressure, gap, weight, open] = part;
+  archive(name, points, clearance, pressure, gap, weight, open);
+}
+
+template <class Archive>
+void serialize(Archive& archive, EdgePressure& pressure) {
+  auto& [edge, at_ends] = pressure;
+  archive(edge, at_ends);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Iteration& iteration, std::uint32_t) {
-  archive(iteration.number, iteration.displacement_change, iteration.clearance_change, iteration.equilibrium,
-          iteration.penetration, iteration.tension, iteration.complementarity, iteration.active,
-          iteration.seconds);
+  auto& [number, displacement_change, clearance_change, equilibrium, penetration, tension, complementarity,
+         active, seconds] = iteration;
+  archive(number, displacement_change, clearance_change, equilibrium, penetration, tension, complementarity,
+          active, seconds);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Residuals& residuals) {
-  archive(residuals.equilibrium, residuals.constitutive, residuals.penetration, residuals.tension,
-          residuals.complementarity, residuals.symmetry);
+  auto& [equilibrium, constitutive, penetration, tension, complementarity, symmetry] = residuals;
+  archive(equilibrium, constitutive, penetration, tension, complementarity, symmetry);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Unknowns& unknowns) {
-  archive(unknowns.stress, unknowns.displacement, unknowns.contact, unknowns.rotation);
+  auto& [stress, displacement, contact, rotation] = unknowns;
+  archive(stress, displacement, contact, rotation);
 }
 
 template <class Archive>
 void serialize(Archive& archive, ContactSummary& contact) {
-  archive(contact.force, contact.max_pressure, contact.length);
+  auto& [force, max_pressure, length] = contact;
+  archive(force, max_pressure, length);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Reaction& reaction) {
-  archive(reaction.part, reaction.force, reaction.moment);
+  auto& [part, force, moment] = reaction;
+  archive(part, force, moment);
 }
 
+/// The asymmetry came later and ends the lists that hold a bound.
 template <class Archive>
 void serialize(Archive& archive, ErrorBound::Parts& parts) {
-  archive(parts.constitutive, parts.contact, parts.oscillation, parts.equilibration);
+  auto& [constitutive, contact, oscillation, equilibration, asymmetry] = parts;
+  archive(constitutive, contact, oscillation, equilibration);
 }
 
 template <class Archive>
 void serialize(Archive& archive, ErrorBound& bound) {
-  archive(bound.value, bound.relative, bound.guaranteed, bound.unmet, bound.energy_lower, bound.energy_upper,
-          bound.parts);
+  auto& [value, relative, guaranteed, unmet, energy_lower, energy_upper, parts] = bound;
+  archive(value, relative, guaranteed, unmet, energy_lower, energy_upper, parts);
 }
 
-/// What came to the parts later; it ends the lists that hold a bound.
 template <class Archive>
 void serialize_asymmetry(Archive& archive, std::optional<ErrorBound>& bound) {
   if (bound) archive(bound->parts.asymmetry);
 }
 
+/// The seconds of the certificate came later and end the list of a summary.
 template <class Archive>
 void serialize(Archive& archive, Timings& timings) {
-  archive(timings.mesh, timings.assemble, timings.factorize, timings.iterate, timings.total);
+  auto& [mesh, assemble, factorize, iterate, certify, total] = timings;
+  archive(mesh, assemble, factorize, iterate, total);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Level& level) {
-  archive(level.number, level.triangles, level.unknowns, level.bound, level.relative, level.iterations,
-          level.seconds);
+  auto& [number, triangles, unknowns, bound, relative, iterations, seconds] = level;
+  archive(number, triangles, unknowns, bound, relative, iterations, seconds);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Summary& summary, std::uint32_t version) {
-  archive(summary.outcome, summary.advice, summary.method, summary.iterations, summary.triangles,
-          summary.unknowns, summary.energy, summary.residuals, summary.contact, summary.parts,
-          summary.timings, summary.peak_memory_bytes, summary.reused, summary.error_bound);
-  if (version >= 1) archive(summary.levels, summary.timings.certify);
-  if (version >= 2) serialize_asymmetry(archive, summary.error_bound);
+  auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
+         error_bound, parts, levels, reused, timings, peak_memory_bytes] = summary;
+  archive(outcome, advice, method, iterations, triangles, unknowns, energy, residuals, contact, parts,
+          timings, peak_memory_bytes, reused, error_bound);
+  if (version >= 1) archive(levels, timings.certify);
+  if (version >= 2) serialize_asymmetry(archive, error_bound);
+  if (version >= 3) archive(notes);
 }
 
 template <class Archive>
 void serialize(Archive& archive, SweepEntry& entry) {
-  archive(entry.title, entry.error, entry.outcome, entry.advice, entry.iterations, entry.energy,
-          entry.penetration, entry.tension, entry.complementarity, entry.sums, entry.parts, entry.seconds,
-          entry.contact);
+  auto& [title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
+         parts, seconds, contact] = entry;
+  archive(title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
+          parts, seconds, contact);
 }
 
 template <class Archive>
 void serialize(Archive& archive, TrueErrors& errors) {
-  archive(errors.displacement, errors.stress, errors.energy_norm, errors.energy, errors.total);
+  auto& [displacement, stress, energy_norm, energy, total] = errors;
+  archive(displacement, stress, energy_norm, energy, total);
 }
 
 template <class Archive>
 void serialize(Archive& archive, StudyRow& row) {
-  archive(row.scheme, row.error, row.level, row.size, row.triangles, row.unknowns, row.energy,
-          row.error_bound, row.errors, row.iterations, row.seconds);
+  auto& [scheme, error, level, size, triangles, unknowns, energy, error_bound, errors, iterations, seconds] =
+      row;
+  archive(scheme, error, level, size, triangles, unknowns, energy, error_bound, errors, iterations, seconds);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
-  archive(solution.summary, solution.scheme, solution.mesh, solution.components, solution.stress,
-          solution.displacement, solution.rotation, solution.displacement_at_points,
-          solution.stress_at_centroids, solution.out_of_plane_stress, solution.contact, solution.history);
-  if (version >= 1) archive(solution.sweep);
-  if (version >= 2) archive(solution.study);
+  auto& [summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
+         stress_at_centroids, out_of_plane_stress, error_squares, admissible_pressure, contact, history,
+         sweep, study] = solution;
+  archive(summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
+          stress_at_centroids, out_of_plane_stress, contact, history);
+  if (version >= 1) archive(sweep);
+  if (version >= 2) archive(study);
   if (version >= 3)
-    for (StudyRow& row : solution.study) serialize_asymmetry(archive, row.error_bound);
+    for (StudyRow& row : study) serialize_asymmetry(archive, row.error_bound);
+  if (version >= 4) archive(mesh.circles, mesh.edge_circles, mesh.notes, error_squares, admissible_pressure);
 }
 
 }  // namespace signorini
@@ -150,21 +183,24 @@ namespace signorini::server {
 
 template <class Archive>
 void serialize(Archive& archive, FaultItem& item) {
-  archive(item.key, item.where, item.detail);
+  auto& [key, where, detail] = item;
+  archive(key, where, detail);
 }
 
 template <class Archive>
 void serialize(Archive& archive, ProblemDetails& details) {
-  archive(details.kind, details.title, details.detail, details.errors);
+  auto& [kind, title, detail, errors] = details;
+  archive(kind, title, detail, errors);
 }
 
 template <class Archive>
 void serialize(Archive& archive, Verdict& verdict) {
-  archive(verdict.error, verdict.summary, verdict.last_iteration);
+  auto& [error, summary, last_iteration] = verdict;
+  archive(error, summary, last_iteration);
 }
 
 }  // namespace signorini::server
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
-CEREAL_CLASS_VERSION(signorini::Summary, 2)
-CEREAL_CLASS_VERSION(signorini::Solution, 3)
+CEREAL_CLASS_VERSION(signorini::Summary, 3)
+CEREAL_CLASS_VERSION(signorini::Solution, 4)

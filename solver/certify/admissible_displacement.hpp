@@ -8,10 +8,14 @@
 #include "certify/local_fields.hpp"
 #include "certify/point_constraints.hpp"
 #include "fem/discretization.hpp"
+#include "fem/edge_pieces.hpp"
 #include "progress.hpp"
 #include "solution.hpp"
 
 namespace signorini {
+
+/// The gap on a contact edge.
+const Field& gap_on(const Discretization& problem, const ContactEdge& contact);
 
 /// v_h of the certificate: continuous, u_D on Γ_D, v_n ≤ g on Γ_C, v_n = 0 on rollers, and one order better
 /// than u_h.
@@ -19,7 +23,10 @@ namespace signorini {
 /// It is quadratic on every triangle. Its values at the points are those of displacement_at_corners(), made
 /// admissible; its mean over each edge is that of the trace multiplier m, so that it inherits the balance of
 /// volume ∫ tr C σ_h = ∫ m·n of every triangle. What a boundary value has beyond its quadratic part is lifted
-/// into the triangle behind the edge.
+/// into the triangle behind the edge as a polynomial, and what that leaves of u_D by a function of which only a bound
+/// is known: LiftRest.
+///
+/// v_n ≤ g holds for all values that the gap is enclosed by, wherever they lie between the nodes.
 class AdmissibleDisplacement {
  public:
   /// `coupling`: the unknowns of the trace space.
@@ -40,8 +47,17 @@ class AdmissibleDisplacement {
     return values;
   }
 
-  /// Something is lifted into the triangle: v_h is no polynomial there.
+  /// Something is lifted into the triangle: v_h is of degree 8 there.
   bool is_lifted(int t) const;
+
+  /// max |z| and max |∇z| of the rest of u_D that is lifted besides, by a function z.
+  struct LiftRest {
+    double value = 0, slope = 0;
+  };
+  LiftRest rest_of_lifts(int t) const;
+
+  /// A bound of |v_h| on the triangle, without what is lifted.
+  double largest_on(int t) const;
 
   /// Adds what is lifted into triangle t, and its gradient, at a point of the reference triangle.
   template <int D>
@@ -51,7 +67,8 @@ class AdmissibleDisplacement {
   /// The value on an edge at s ∈ [0, 1] from its first to its second point.
   Eigen::VectorXd on_edge(int edge, double s) const;
 
-  /// g − v_n on a contact edge.
+  /// v_n on a contact edge, and g − v_n.
+  double along_contact(const ContactEdge& contact, double s) const;
   double room(const ContactEdge& contact, double s) const;
 
   /// Why v_h is not admissible, in words; empty if it is.
@@ -67,15 +84,20 @@ class AdmissibleDisplacement {
   void constrain_points();
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);
+  void follow_traces(std::map<int, std::vector<PointConstraint>> constraints);
+  bool exceeds_gap(const ContactEdge& contact) const;
   void fix(const BoundaryPart& part, const Fixed& condition);
+  void add_rest(int edge, const EdgeLine& line, const Field& field);
+  double small_coefficient() const;
   void roll(const BoundaryPart& part);
   void meet(const ContactEdge& contact);
   void close(const ContactEdge& contact);
   void lower_below(const ContactEdge& contact);
+  double needed_bubble(const ContactEdge& contact) const;
   void add_lift(int edge, const Values& d);
   void refuse(const std::string& reason);
 
-  Point at(int edge, double s) const;
+  const Field& gap(const ContactEdge& contact) const;
   double gap_at(const ContactEdge& contact, double s) const;
   /// The vector with v_n = direction · v on a contact edge.
   Eigen::VectorXd direction(const ContactEdge& contact) const;
@@ -88,6 +110,7 @@ class AdmissibleDisplacement {
   double scale_;               ///< max |v|
   std::map<int, Eigen::VectorXd> fixed_points_;
   std::map<int, Lift> lifts_;
+  std::map<int, LiftRest> rests_;  ///< of u_D on edges
   std::vector<std::string> unmet_;
 };
 

@@ -42,9 +42,11 @@ class FreeUnknowns {
       add(factor, known->second, rest);
       for (const auto& [other, share] : known->second) largest = std::max(largest, std::abs(factor * share));
     }
+    // What is left of terms that cancel would fill the combinations.
+    std::erase_if(rest, [&](const auto& term) { return std::abs(term.second) <= kRounding * largest; });
     const auto pivot =
         std::ranges::max_element(rest, {}, [](const auto& term) { return std::abs(term.second); });
-    if (pivot == rest.end() || std::abs(pivot->second) <= kRounding * largest) return;
+    if (pivot == rest.end()) return;
     const auto [unknown, factor] = *pivot;
     rest.erase(pivot);
     for (auto& term : rest) term.second /= -factor;
@@ -76,7 +78,10 @@ class FreeUnknowns {
   using Combination = std::map<int, double>;
 
   static void add(double times, const Combination& some, Combination& sum) {
-    for (const auto& [unknown, factor] : some) sum[unknown] += times * factor;
+    for (const auto& [unknown, factor] : some) {
+      const double before = sum[unknown], after = sum[unknown] += times * factor;
+      if (std::abs(after) <= kRounding * std::abs(before)) sum.erase(unknown);
+    }
   }
 
   std::map<int, Combination> known_;

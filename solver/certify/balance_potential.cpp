@@ -6,11 +6,10 @@ namespace signorini {
 namespace {
 
 /// The work of −C β on curl φ, which is that of a turned strain on ∇φ.
-Eigen::VectorXd work_against(const Discretization& problem, const LoadValues<1>& load,
-                             const QuadraticBalance& balance_on) {
+Eigen::VectorXd work_against(const Discretization& problem, const QuadraticBalance& balance_on) {
   LawField<1> law(problem.problem.material);
   return work_of_stress(problem, [&](int t) -> StressAtPoints {
-    const auto balance = balance_on(t, load);
+    const auto balance = balance_on(t);
     if (!balance) return StressAtPoints::Zero();
     const AffineMap map(problem.mesh.corners(t));
     StressAtPoints turned = QuadraticBalance::at_points(map, *balance);
@@ -24,8 +23,7 @@ Eigen::VectorXd work_against(const Discretization& problem, const LoadValues<1>&
 
 }  // namespace
 
-std::optional<QuadraticValues> potential_of_balance(const Discretization& problem, const LoadValues<1>& load,
-                                                    Progress& progress) {
+std::optional<QuadraticValues> potential_of_balance(const Discretization& problem, Progress& progress) {
   constexpr int steps = 6;
   const QuadraticBalance balance(problem);
   if (!balance.is_needed()) return std::nullopt;
@@ -33,7 +31,7 @@ std::optional<QuadraticValues> potential_of_balance(const Discretization& proble
   for (const BoundaryPart& part : problem.mesh.boundary)
     if (!condition_on<Fixed>(problem.problem, part.name))
       for (const int edge : part.edges) potential.hold(problem.mesh, edge);
-  relax(problem, turned_compliance_of, potential, work_against(problem, load, balance), steps, progress);
+  relax(problem, turned_compliance_of, potential, work_against(problem, balance), steps, progress);
   return potential;
 }
 

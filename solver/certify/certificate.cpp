@@ -3,6 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "certify/carried_loads.hpp"
 #include "certify/least_airy.hpp"
 #include "certify/least_potential.hpp"
 #include "certify/patch_pairs.hpp"
@@ -26,7 +27,7 @@ void add_patches(const Discretization& problem, const Solution& solution, const 
     try {
       const PatchPairs pairs(problem, solution.stress, pair, std::move(patch), within);
       if (!pairs.are_admissible()) continue;
-      totals.add<1>(pairs.problem(), LoadValues<1>(pairs.problem(), within), pairs.first(),
+      totals.add<1>(pairs.problem(), LawOnMesh(problem.problem.material, *pairs.patch().mesh, within), pairs.first(),
                     MembraneSums(pairs), pairs.patch().parents, within, &pairs.second());
       for (const int t : pairs.patch().parents) owners[t] = -1;
     } catch (const std::runtime_error&) {
@@ -47,6 +48,14 @@ std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretizat
   return all;
 }
 
+std::string nothing_takes(const std::vector<ContactPressure::Lack>& lacks) {
+  return lacks.empty()
+             ? "a load that is no polynomial is known to so many digits, and no fixed part takes the rest: fix a part, or "
+               "give loads that are polynomials on both sides of straight lines"
+             : "a contact is too short for the mesh to hold the body in balance, and no fixed part takes the rest: refine "
+               "the mesh where the body touches, or fix a part";
+}
+
 void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
   all.insert(all.end(), some.begin(), some.end());
 }
@@ -60,30 +69,34 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   AdmissiblePair pair{{problem, solution, coupling}, {problem, solution.stress, clearance}};
   Certificate certificate;
   std::vector<std::string> unmet = pair.v.unmet();
-  add(unmet, pair.pressure.unmet);
   // Rounding leaves less; an iteration that its tolerance ended before leaves more.
   constexpr double equilibrium = 1e-9;
   if (solution.summary.residuals.equilibrium > equilibrium)
     unmet.push_back("the stress is not in equilibrium: the iteration ended before it was");
+  const LawOnMesh laws(problem.problem.material, problem.mesh, progress);
+  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet()}) add(unmet, reasons);
   Totals totals(problem.triangles());
   Owners owners(problem.triangles());
   std::iota(owners.begin(), owners.end(), 0);
   if (problem.spaces().components == 1) {
-    const LoadValues<1> load(problem, progress);
     pair.v.relax(work_of_loads(problem), kStepsFromAverage, progress);
     minimize_potential(problem, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = potential_of_balance(problem, load, progress);
+    pair.of_balance = potential_of_balance(problem, progress);
     add_patches(problem, solution, pair, owners, totals, progress);
-    totals.add<1>(problem, load, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
+    totals.add<1>(problem, laws, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
   } else {
-    const LoadValues<2> load(problem, progress);
     if (problem.spaces().order == 1)
-      minimize_airy(problem, load, solution.stress, pair.v, clearance, pair.pressure, progress);
+      minimize_airy(problem, solution.stress, pair.v, clearance, pair.pressure, progress);
     const EdgeTractions tractions(problem, solution.stress, pair.pressure);
     add(unmet, tractions.unmet());
     progress.check();
-    totals.add<2>(problem, load, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
+    totals.add<2>(problem, laws, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
   }
+  const CarriedLoads carried = carry_uncertain_loads(problem, laws, pair.pressure);
+  totals.carried = carried.norm;
+  totals.contact *= 1 + carried.change_of_pressure;
+  if (carried.change_of_pressure > 0) totals.all.add_unknown_strain(carried.norm);
+  if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);
   certificate.pressure = pressure_where(owners, problem, pair.pressure);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "certify/pressure_chain.hpp"
 #include "mesh/parts.hpp"
@@ -11,6 +12,9 @@ namespace {
 
 /// Below this part of the forces a difference is rounding.
 constexpr double kRounding = 1e-12;
+
+/// A chain adds up the rounding of all its edges.
+constexpr double kNoLack = 100;
 
 /// Ψ at the nodes of a chain, in the direction in which it runs, and its mean over each link.
 struct Potential {
@@ -25,6 +29,14 @@ struct Potential {
     }
     for (std::size_t i = 0; i < given.size(); ++i)
       means.push_back(at_nodes[i] + admissible[i].forces[0] - given[i].forces[0]);
+  }
+
+  /// Lets Ψ vanish where the chain ends freely: what it would have there is left to a constant traction on the last
+  /// link.
+  double take_lack(const AdmissibleChain& chain) {
+    if (!chain.has_free_ends()) return 0;
+    means.back() -= at_nodes.back() / 2;
+    return std::exchange(at_nodes.back(), 0.);
   }
 
   double largest() const {
@@ -57,9 +69,9 @@ ContactPressure::ContactPressure(const Discretization& problem, const Eigen::Mat
       add_airy(problem, given, chain, scale);
       continue;
     }
-    const Potential potential(given, chain);
-    if (chain.has_free_ends() && std::abs(potential.at_nodes.back()) > 100 * scale)
-      refuse(problem, given, "pulls");
+    Potential potential(given, chain);
+    if (const double lack = potential.take_lack(chain); std::abs(lack) > kNoLack * scale)
+      lacks.push_back({problem.clearance.edges[given.back().number].edge, std::abs(lack), 0});
     if (potential.largest() > scale) add_curl(problem, chain.links(), potential.at_nodes, potential.means);
   }
 }
@@ -74,11 +86,6 @@ Quadratic<1> ContactPressure::potential_on(const Mesh& mesh, int t) const {
   return values;
 }
 
-void ContactPressure::refuse(const Discretization& problem, const Chain& chain, const std::string& what) {
-  const std::string why = "the contact near " + to_string(problem.mesh.points[chain[0].begin]) + " " + what;
-  if (std::ranges::find(unmet, why) == unmet.end()) unmet.push_back(why);
-}
-
 /// Of an elastic body force and moment must stay. An edge between closed and open is left without pressure
 /// then, because its share would act with a moment, unless the contact is too short to balance it otherwise.
 AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
@@ -88,8 +95,9 @@ AdmissibleChain ContactPressure::admissible(const Discretization& problem, const
   if (problem.spaces().components == 1) return loaded;
   AdmissibleChain free(problem, given, clearance, Transition::free);
   if (!free.has_free_ends() || free.balance(given, rounding)) return free;
-  if (!loaded.balance(given, rounding)) refuse(problem, given, "pulls");
-  return loaded;
+  // What the balance lacks is what it has, if nothing does better.
+  AdmissibleChain balanced = loaded;
+  return balanced.balance(given, rounding) ? balanced : loaded;
 }
 
 void ContactPressure::keep(const Discretization& problem, const Chain& given, const Chain& admissible) {
@@ -116,6 +124,24 @@ void ContactPressure::add_curl(const Discretization& problem, const Chain& chain
     // The mean of a quadratic function over the edge is (a + 4 m + b) / 6.
     potential_at_middles[edge] = sign * (6 * means[i] - at_nodes[i] - at_nodes[i + 1]) / 4;
   }
+}
+
+/// Lets w and ψ vanish where the chain ends freely, by w − (s w(1) + 4 s (1 − s) β n) on its last link.
+void ContactPressure::take_lack(const Discretization& problem, const Chain& links, double sign,
+                                std::vector<Vector>& w, std::vector<double>& psi) {
+  const Mesh& mesh = problem.mesh;
+  const int edge = problem.clearance.edges[links.back().number].edge;
+  const double length = links.back().length;
+  const Vector n = mesh.outward_normal(edge), force = w.back();
+  const double rest = psi.back() - sign * length * n.dot(force) / 2, beta = 1.5 * rest / (sign * length);
+  w.back().setZero();
+  psi.back() = 0;
+  // The derivative along the chain, at its begin and its end.
+  const Vector at_begin = -sign / length * (force + 4 * beta * n), at_end = -sign / length * (force - 4 * beta * n);
+  Lack lack{edge, force.norm(), 2. / 3 * std::abs(beta) * length};
+  const bool on_the_left = domain_on_the_left(mesh, edge)[0] == links.back().begin;
+  lack.traction << (on_the_left ? at_begin : at_end), (on_the_left ? at_end : at_begin);
+  lacks.push_back(lack);
 }
 
 /// With w = (∂_y ψ, −∂_x ψ), whose derivative along Γ_C is the change −(p* − p_h) d of the traction, and
@@ -158,8 +184,8 @@ void ContactPressure::add_airy(const Discretization& problem, const Chain& given
     const double rest = psi.back();
     for (double& value : psi) value -= rest;
   }
-  if (chain.has_free_ends() && (w.back().norm() > 100 * scale || std::abs(psi.back()) > 100 * scale * length))
-    refuse(problem, given, "pulls");
+  if (chain.has_free_ends() && std::max(w.back().norm(), std::abs(psi.back()) / length) > kNoLack * scale)
+    take_lack(problem, links, sign, w, psi);
   const auto set = [&](int point, std::size_t i) {
     airy_at_points[point] = {psi[i], Vector(-w[i].y(), w[i].x())};
   };

@@ -17,11 +17,22 @@ namespace signorini {
 /// begins, whose traction is free), so that a stress without divergence makes the change: for a membrane the
 /// curl of Ψ; for an elastic body Ψ is a vector, along the direction of each edge, and the Airy stress of a
 /// function ψ makes the change, so that moments balance too.
+///
+/// A contact that is too short may have no pressure p* ≥ 0 with the force and the moment of p_h. What lacks then acts
+/// besides p* on the last edge of the chain, as a traction that Γ_D has to take: Lack.
 struct ContactPressure {
   /// ψ and ∇ψ at a point.
   struct Airy {
     double value = 0;
     Vector gradient = Vector::Zero();
+  };
+
+  /// A traction on an edge of Γ_C besides p*: its force, its moment about the middle of the edge, and of an elastic body
+  /// its values at both ends, as EdgeTractions has them.
+  struct Lack {
+    int edge;
+    double force, moment;
+    Eigen::Matrix2d traction = Eigen::Matrix2d::Zero();
   };
 
   /// `clearance`: a value a row of the clearance space.
@@ -39,7 +50,7 @@ struct ContactPressure {
   std::unordered_map<int, double> potential_at_points, potential_at_middles;
   /// ψ at points, for an elastic body.
   std::unordered_map<int, Airy> airy_at_points;
-  std::vector<std::string> unmet;
+  std::vector<Lack> lacks;
 
  private:
   AdmissibleChain admissible(const Discretization& problem, const Chain& given,
@@ -47,9 +58,10 @@ struct ContactPressure {
   void keep(const Discretization& problem, const Chain& given, const Chain& admissible);
   void add_curl(const Discretization& problem, const Chain& chain, const std::vector<double>& at_nodes,
                 const std::vector<double>& means);
+  void take_lack(const Discretization& problem, const Chain& links, double sign, std::vector<Vector>& w,
+                 std::vector<double>& psi);
   void add_airy(const Discretization& problem, const Chain& given, const AdmissibleChain& chain,
                 double scale);
-  void refuse(const Discretization& problem, const Chain& chain, const std::string& what);
 };
 
 }  // namespace signorini

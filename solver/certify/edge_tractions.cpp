@@ -56,7 +56,7 @@ int other_side(const Mesh& mesh, int edge, int t) {
 
 EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
                              const ContactPressure& pressure)
-    : problem_(problem), given_(problem.problem, problem.mesh), tractions_(problem.mesh.edges.size()) {
+    : problem_(problem), given_(problem.traction), tractions_(problem.mesh.edges.size()) {
   take_from(stress);
   change_pressure(pressure);
   Eigen::Matrix3Xd moments = asymmetry(problem, stress);
@@ -174,7 +174,7 @@ Eigen::Matrix2d EdgeTractions::of_airy(const ContactPressure::Airy& a, const Con
   return ends;
 }
 
-/// On Γ_C the traction changes by −(p* − p_h) d.
+/// On Γ_C the traction changes by −(p* − p_h) d, and by what lacks.
 void EdgeTractions::change_pressure(const ContactPressure& pressure) {
   const Mesh& mesh = problem_.mesh;
   std::vector<bool> on_contact(mesh.edges.size(), false);
@@ -187,6 +187,7 @@ void EdgeTractions::change_pressure(const ContactPressure& pressure) {
     at(edge).col(0) -= (forward ? first : second) * d;
     at(edge).col(1) -= (forward ? second : first) * d;
   }
+  for (const ContactPressure::Lack& lack : pressure.lacks) at(lack.edge) += lack.traction;
   if (pressure.airy_at_points.empty()) return;
   const auto airy = [&](int point) {
     const auto found = pressure.airy_at_points.find(point);

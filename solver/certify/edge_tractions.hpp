@@ -47,7 +47,7 @@ class EdgeTractions {
   void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& moments);
 
   const Discretization& problem_;
-  const TractionField given_;
+  const TractionField& given_;
   /// Of each edge, seen from its first triangle, at the ends in the direction in which that triangle lies on
   /// the left.
   std::vector<Eigen::Matrix2d> tractions_;

@@ -1,16 +1,19 @@
 #include <cmath>
 
+#include "certify/balanced_load.hpp"
 #include "certify/macro_data.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
 namespace {
 
-/// What each part of a triangle with lifts is cut into along each side.
-constexpr int kCuts = 4;
-
 /// A shape that has come up so often is worth its operators.
 constexpr int kOften = 100;
+
+/// Stresses are of degree 3.
+int degree_of_fields(bool lifted) {
+  return std::max(3, lifted ? Lift::kDegreeInside - 1 : 1);
+}
 
 }  // namespace
 
@@ -21,19 +24,18 @@ ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution
       v_(v),
       tractions_(tractions),
       has_load_(problem.problem.body.size() > 0),
-      plain_(problem.spaces(), 1),
-      composite_(problem.spaces(), kCuts),
       shapes_(problem) {}
 
-ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map, const LoadValues<2>& load) const {
-  return {macro_data(tractions_, load, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
+  return {macro_data(problem_, tractions_, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
 }
 
 /// The operators of the triangle's shape, or null.
 const MacroNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
   Shape& shape = shapes_(t, [] { return Shape(); });
   if (++shape.seen == kOften)
-    shape.norms = std::make_unique<const MacroNorms>(plain_, map, SymmetricLaw(law(map({0, 0})).compliance));
+    shape.norms = std::make_unique<const MacroNorms>(macro_rule(problem_.spaces(), 6), map,
+                                                     SymmetricLaw(law(map({0, 0})).compliance));
   return shape.norms.get();
 }
 
@@ -50,60 +52,97 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
   return strains;
 }
 
-/// (f, v), or what it is at least: f − Πf is orthogonal to v_h, where that is quadratic, and does no more
-/// work on the inner part of v than the product of their norms.
-double ElasticSums::work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
-                                 const Inner& inner, const LoadValues<2>& load) const {
-  if (!has_load_) return 0;
-  const VectorField& f = problem_.problem.body;
-  const auto [balanced, rest] = load.projection(t);
-  double work = 0, inner_square = 0;
+/// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does no more
+/// work on the rest of v than the product of their norms.
+void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+                                   const Inner& inner, TriangleSums& sums) const {
+  if (!has_load_) return;
+  const ProjectedLoad& load = problem_.body[t];
+  const Quadratic<2> balanced = balanced_load<2>(problem_, t);
+  double work = 0, rest_square = 0;
   for (int q = 0; q < rule.size(); ++q) {
     const MacroRule::Values& at = rule.values[q];
     const double weight = rule.places[q].weight * map.determinant;
-    const Eigen::Vector2d of_inner = inner.reshaped(2, MacroRule::kInner) * at.inner_basis;
-    Eigen::Vector2d v = given.displacement.reshaped(2, 6) * at.basis + of_inner, force = balanced * at.basis;
+    Eigen::Vector2d rest = inner.reshaped(2, MacroRule::kInner) * at.inner_basis;
     if (!given.lifted.empty()) {
       Tensor<2> slope = Tensor<2>::Zero();
-      v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), v, slope);
-      const Point x = map(rule.places[q].point);
-      force = {f(0, x), f(1, x)};
+      v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
     }
-    work += weight * force.dot(v);
-    inner_square += weight * of_inner.squaredNorm();
+    work += weight * (balanced * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
+    rest_square += weight * rest.squaredNorm();
   }
-  return given.lifted.empty() ? work - rest * std::sqrt(inner_square) : work;
+  sums.energy -= work;
+  sums.energy_slack += load.rest * std::sqrt(rest_square) + load.uncertain_work * v_.largest_on(t);
 }
 
-TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LoadValues<2>& load) {
-  const AffineMap map(problem_.mesh.corners(t));
-  Given given = given_on(t, map, load);
-  const bool lifted = v_.is_lifted(t);
-  const MacroNorms* norms = lifted ? nullptr : norms_of(t, map, law);
-  if (norms) {
-    constexpr int most = MacroElement::kData + kMaxLocal + 12;
-    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms->gap.cols());
-    z << given.data, given.stress, given.displacement;
-    const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
-      return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
-    };
-    const auto stresses = z.head(norms->correction.cols());
-    return {square(norms->gap, z),
-            square(norms->direct_gap, z),
-            square(norms->correction, stresses),
-            square(norms->skew, given.stress),
-            square(norms->stress, given.stress),
-            square(norms->strain, z) / 2 - work_of_load(t, map, plain_, given, norms->inner * z, load)};
-  }
-  const MacroRule& rule = lifted ? composite_ : plain_;
-  if (lifted) given.lifted = lifted_strains(t, map, rule);
+void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const {
+  const AdmissibleDisplacement::LiftRest rest = v_.rest_of_lifts(t);
+  if (rest.slope == 0) return;
+  const ProjectedLoad& load = problem_.body[t];
+  const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
+  sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
+                       rest.value * (std::sqrt(area) * load.rest + area * load.balanced.norm());
+  sums.add_unknown_strain(zeta);
+}
+
+TriangleSums ElasticSums::by_norms(const MacroNorms& norms, const Given& given, Inner& inner) const {
+  constexpr int most = MacroElement::kData + kMaxLocal + 12;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms.gap.cols());
+  z << given.data, given.stress, given.displacement;
+  const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
+    return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
+  };
+  const auto stresses = z.head(norms.correction.cols());
+  inner = norms.inner * z;
+  TriangleSums sums;
+  sums.gap = square(norms.gap, z);
+  sums.direct_gap = square(norms.direct_gap, z);
+  sums.correction = square(norms.correction, stresses);
+  sums.skew = square(norms.skew, given.stress);
+  sums.stress = square(norms.stress, given.stress);
+  sums.strain = sums.energy = square(norms.strain, z) / 2;
+  return sums;
+}
+
+TriangleSums ElasticSums::by_points(const AffineMap& map, const MacroRule& rule, Given given,
+                                    double error_of_whole, LawField<2>& law, Inner& inner) const {
   const MacroValues<1> values(rule, map, given, laws_at(problem_, rule, map, law));
-  return {values.gap.squaredNorm(),
-          values.direct_gap.squaredNorm(),
-          values.correction.squaredNorm(),
-          values.skew.squaredNorm(),
-          values.stress.squaredNorm(),
-          values.strain.squaredNorm() / 2 - work_of_load(t, map, rule, given, values.inner, load)};
+  inner = values.inner;
+  TriangleSums sums;
+  sums.gap = values.gap.squaredNorm();
+  sums.direct_gap = values.direct_gap.squaredNorm();
+  sums.correction = values.correction.squaredNorm();
+  sums.skew = values.skew.squaredNorm();
+  sums.stress = values.stress.squaredNorm();
+  sums.strain = sums.energy = values.strain.squaredNorm() / 2;
+  // What the law has beyond a polynomial counts twice, in the integral and in the rule.
+  for (int q = 0; q < rule.size(); ++q) {
+    const double error = rule.errors.empty() ? error_of_whole : rule.errors[q];
+    const double of_strain = values.strain.middleRows<3>(3 * q).squaredNorm();
+    sums.slack += 2 * error * (2 * values.stress.middleRows<4>(4 * q).squaredNorm() +
+                               3 * values.correction.middleRows<3>(3 * q).squaredNorm() + of_strain);
+    sums.energy_slack += error * of_strain;
+  }
+  return sums;
+}
+
+TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
+  const AffineMap map(problem_.mesh.corners(t));
+  Given given = given_on(t, map);
+  const bool lifted = v_.is_lifted(t), constant_law = problem_.element.has_constant_material();
+  const MacroNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
+  const int of_fields = degree_of_fields(lifted);
+  const int degree = laws.whole(t).degree_of_rule(of_fields, problem_.spaces().order);
+  const std::vector<LawPiece>& pieces = laws.cut(t);
+  std::optional<MacroRule> own;
+  if (!pieces.empty()) own.emplace(problem_.spaces(), pieces, of_fields);
+  const MacroRule& rule = own ? *own : macro_rule(problem_.spaces(), degree);
+  if (lifted) given.lifted = lifted_strains(t, map, rule);
+  Inner inner;
+  TriangleSums sums = norms ? by_norms(*norms, given, inner) : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
+  add_work_of_load(t, map, rule, given, inner, sums);
+  add_rest_of_lifts(t, map, laws.whole(t), sums);
+  return sums;
 }
 
 }  // namespace signorini

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <unordered_map>
 
 #include "certify/admissible_minimum.hpp"
 #include "certify/layers.hpp"
@@ -16,8 +17,8 @@ namespace {
 using Airy = ContactPressure::Airy;
 
 constexpr int kLayers = 6;
-/// Slopes of ψ below this part of the largest are left to their surroundings.
-constexpr double kHardly = 1e-3;
+/// Points with less than this part of the largest |∇ψ| + |ψ| / h are left to their surroundings.
+constexpr double kHardly = 1e-6;
 
 /// A point with its unknowns: (ψ, ∇ψ), or where the contact has a direction (ψ, b) with ∇ψ = b (d_y, −d_x).
 struct Place {
@@ -42,7 +43,7 @@ Airy airy_of(const Eigen::Vector3d& values) {
 
 class Minimization {
  public:
-  Minimization(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,
+  Minimization(const Discretization& problem, const Eigen::MatrixXd& stress,
                ContactPressure& pressure)
       : problem_(problem),
         mesh_(problem.mesh),
@@ -51,7 +52,7 @@ class Minimization {
         places_(mesh_.points.size()) {
     for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i);
     place_unknowns();
-    assemble(load, stress, EdgeTractions(problem, stress, pressure));
+    assemble(stress, EdgeTractions(problem, stress, pressure));
   }
 
   void run(const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance, Progress& progress) {
@@ -100,13 +101,28 @@ class Minimization {
     sides_.push_back(side);
   }
 
+  /// |∇ψ| + |ψ| / h with the shortest contact edge h there: ψ would fall so steeply to 0 beside the point.
+  std::unordered_map<int, double> slopes_at_points() const {
+    std::unordered_map<int, double> slopes;
+    for (const Side& side : sides_)
+      for (const int point : {side.from, side.to})
+        if (const auto found = pressure_.airy_at_points.find(point);
+            found != pressure_.airy_at_points.end()) {
+          const Airy& airy = found->second;
+          const double h = (mesh_.points[side.to] - mesh_.points[side.from]).norm();
+          double& slope = slopes[point];
+          slope = std::max(slope, airy.gradient.norm() + std::abs(airy.value) / h);
+        }
+    return slopes;
+  }
+
   void place_unknowns() {
     std::vector<int> points;
+    const std::unordered_map<int, double> slopes = slopes_at_points();
     double largest = 0;
-    for (const auto& [point, airy] : pressure_.airy_at_points)
-      largest = std::max(largest, airy.gradient.norm());
-    for (const auto& [point, airy] : pressure_.airy_at_points)
-      if (airy.gradient.norm() > kHardly * largest) points.push_back(point);
+    for (const auto& [point, slope] : slopes) largest = std::max(largest, slope);
+    for (const auto& [point, slope] : slopes)
+      if (slope > kHardly * largest) points.push_back(point);
     const std::vector<int> layers = layers_around(mesh_, points, kLayers);
     std::vector<bool> held(mesh_.points.size(), false);
     for (const BoundaryPart& part : mesh_.boundary) {
@@ -164,8 +180,8 @@ class Minimization {
     return data;
   }
 
-  void assemble(const LoadValues<2>& load, const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
-    const MacroRule rule(problem_.spaces(), 1);
+  void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
+    const MacroRule& rule = macro_rule(problem_.spaces(), 6);
     LawField<2> law(problem_.problem.material);
     std::vector<Eigen::Triplet<double>> entries;
     for (int t = 0; t < problem_.triangles(); ++t) {
@@ -173,7 +189,7 @@ class Minimization {
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
       const AffineMap map(mesh_.corners(t));
       Eigen::Matrix<double, MacroElement::kData, kAiryColumns> data;
-      data << data_of_airy(t, map), macro_data(tractions, load, t, map);
+      data << data_of_airy(t, map), macro_data(problem_, tractions, t, map);
       Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> coefficients(stress.rows(), kAiryColumns);
       coefficients << Eigen::MatrixXd::Zero(stress.rows(), 9), stress.col(t);
       const std::vector<SymmetricLaw> laws = laws_at(problem_, rule, map, law);
@@ -245,11 +261,11 @@ class Minimization {
 
 }  // namespace
 
-void minimize_airy(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,
+void minimize_airy(const Discretization& problem, const Eigen::MatrixXd& stress,
                    const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
                    ContactPressure& pressure, Progress& progress) {
-  if (pressure.airy_at_points.empty() || !pressure.unmet.empty()) return;
-  Minimization(problem, load, stress, pressure).run(v, clearance, progress);
+  if (pressure.airy_at_points.empty()) return;
+  Minimization(problem, stress, pressure).run(v, clearance, progress);
 }
 
 }  // namespace signorini

@@ -2,7 +2,6 @@
 
 #include "certify/admissible_displacement.hpp"
 #include "certify/contact_pressure.hpp"
-#include "certify/load_values.hpp"
 #include "progress.hpp"
 
 namespace signorini {
@@ -16,7 +15,7 @@ namespace signorini {
 /// does not vanish, with p* kept on open edges. A primal active set like that one.
 ///
 /// `clearance`: a value a row of the clearance space.
-void minimize_airy(const Discretization& problem, const LoadValues<2>& load, const Eigen::MatrixXd& stress,
+void minimize_airy(const Discretization& problem, const Eigen::MatrixXd& stress,
                    const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
                    ContactPressure& pressure, Progress& progress);
 

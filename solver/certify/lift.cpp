@@ -1,83 +1,89 @@
 #include "certify/lift.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/LU>
 
 namespace signorini {
 namespace {
 
-using Nodal = Eigen::Matrix<double, Lift::size, 1>;
+constexpr int kInner = Lift::kDegree - 1;
 
-double node(double i) {
-  return (1 - std::cos(i * std::numbers::pi / (Lift::size - 1))) / 2;
-}
-
-/// The weights of barycentric interpolation in Chebyshev points (Berrut, Trefethen 2004, eq. 5.4).
-double weight(int i) {
-  const double half = i == 0 || i == Lift::size - 1 ? 0.5 : 1;
-  return i % 2 == 0 ? half : -half;
-}
-
-Nodal all_nodes() {
-  Nodal nodes;
-  for (int i = 0; i < Lift::size; ++i) nodes[i] = node(i);
-  return nodes;
-}
-
-/// The Lagrange polynomials at s.
-Nodal lagrange(double s) {
-  static const Nodal nodes = all_nodes();
-  Nodal values;
-  for (int i = 0; i < Lift::size; ++i) {
-    if (s == nodes[i]) return Nodal::Unit(i);
-    values[i] = weight(i) / (s - nodes[i]);
-  }
-  return values / values.sum();
-}
-
-/// The derivatives of the Lagrange polynomials in the nodes (Berrut, Trefethen 2004, eq. 9.4, 9.5), row by
-/// node.
-Eigen::Matrix<double, Lift::size, Lift::size> differentiation() {
-  Eigen::Matrix<double, Lift::size, Lift::size> d = decltype(d)::Zero();
-  for (int i = 0; i < Lift::size; ++i)
-    for (int j = 0; j < Lift::size; ++j) {
-      if (i == j) continue;
-      d(i, j) = weight(j) / weight(i) / (node(i) - node(j));
-      d(i, i) -= d(i, j);
-    }
-  return d;
+double node(int i) {
+  return (1 - std::cos(i * std::numbers::pi / Lift::kDegree)) / 2;
 }
 
 }  // namespace
 
-Lift::Lift(int components, const std::function<Eigen::VectorXd(double s)>& d) : values_(components, size) {
-  values_.setZero();
-  for (int i = 1; i + 1 < size; ++i) values_.col(i) = d(node(i));
-  for (int i = 0; i + 1 < size; ++i) {
-    const double s = node(i + 0.5);
-    interpolation_error_ = std::max(interpolation_error_, ((*this)(s)-d(s)).lpNorm<Eigen::Infinity>());
+Lift::Powers Lift::powers(double t) {
+  Powers all;
+  double power = 1;
+  for (int k = 0; k < kCoefficients; ++k, power *= t - 0.5) all[k] = power;
+  return all;
+}
+
+Lift::Powers Lift::slopes(double t) {
+  Powers all = Powers::Zero();
+  double power = 1;
+  for (int k = 1; k < kCoefficients; ++k, power *= t - 0.5) all[k] = k * power;
+  return all;
+}
+
+Lift::Lift(int components, const std::function<Eigen::VectorXd(double s)>& d) : coefficients_(components, kInner) {
+  static const Eigen::Matrix<double, kInner, kInner> of_values = [] {
+    Eigen::Matrix<double, kInner, kInner> all;
+    for (int i = 0; i < kInner; ++i) all.row(i) = powers(node(i + 1)).transpose();
+    return all.inverse().eval();
+  }();
+  Eigen::Matrix<double, Eigen::Dynamic, kInner> values(components, kInner);
+  for (int i = 0; i < kInner; ++i) {
+    const double s = node(i + 1);
+    const Eigen::VectorXd own = d(s);
+    largest_ = std::max(largest_, own.lpNorm<Eigen::Infinity>());
+    values.col(i) = own / (s * (1 - s));
   }
+  coefficients_ = values * of_values.transpose();
 }
 
 Eigen::VectorXd Lift::operator()(double s) const {
-  return values_ * lagrange(s);
-}
-
-Eigen::VectorXd Lift::derivative(double s) const {
-  static const Eigen::Matrix<double, size, size> differentiate = differentiation();
-  return values_ * (differentiate.transpose() * lagrange(s));
+  return s * (1 - s) * (coefficients_ * powers(s));
 }
 
 Eigen::VectorXd Lift::value(double a, double b) const {
-  const double rho = a + b;
-  return rho * (*this)(b / rho);
+  return a * b * (2 - a - b) * (coefficients_ * powers((1 + b - a) / 2));
 }
 
 Eigen::Matrix<double, Eigen::Dynamic, 2> Lift::gradient(double a, double b, const Vector& gradient_a,
                                                         const Vector& gradient_b) const {
-  const double s = b / (a + b);
-  const Eigen::VectorXd d = (*this)(s), slope = derivative(s);
-  return (d - s * slope) * (gradient_a + gradient_b).transpose() + slope * gradient_b.transpose();
+  const double t = (1 + b - a) / 2, factor = 2 - a - b;
+  const Vector of_bubble =
+      factor * (b * gradient_a + a * gradient_b) - a * b * (gradient_a + gradient_b);
+  return coefficients_ * powers(t) * of_bubble.transpose() +
+         a * b * factor * (coefficients_ * slopes(t)) * ((gradient_b - gradient_a) / 2).transpose();
+}
+
+const Lift::Errors& Lift::errors() {
+  static const Errors all = [] {
+    // Between the samples they change by less than the margin.
+    constexpr int samples = 4000;
+    constexpr double margin = 1.002;
+    Errors errors{};
+    for (int i = 1; i < samples; ++i) {
+      const double s = 1. * i / samples;
+      double omega = 1, slope = 0;
+      for (int k = 0; k <= kDegree; ++k) {
+        slope = slope * (s - node(k)) + omega;
+        omega *= s - node(k);
+      }
+      errors.value = std::max(errors.value, margin * std::abs(omega));
+      errors.slope = std::max(errors.slope, margin * std::abs(slope));
+      errors.over_bubble = std::max(errors.over_bubble, margin * std::abs(omega) / (4 * s * (1 - s)));
+    }
+    return errors;
+  }();
+  return all;
 }
 
 }  // namespace signorini

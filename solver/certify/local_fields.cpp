@@ -2,23 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "fem/lagrange.hpp"
-
 namespace signorini {
-
-std::vector<WeightedPoint> composite_rule(int cuts) {
-  std::vector<WeightedPoint> rule;
-  const auto add = [&](const Point& corner, double side) {
-    for (int q = 0; q < TriangleRule::size; ++q)
-      rule.push_back({corner + side * triangle_rule().points[q], triangle_rule().weights[q] / (cuts * cuts)});
-  };
-  for (int i = 0; i < cuts; ++i)
-    for (int j = 0; i + j < cuts; ++j) {
-      add(Point(i, j) / cuts, 1. / cuts);
-      if (i + j + 1 < cuts) add(Point(i + 1, j + 1) / cuts, -1. / cuts);
-    }
-  return rule;
-}
 
 std::vector<Point> triangle_points() {
   return {triangle_rule().points.begin(), triangle_rule().points.end()};
@@ -33,13 +17,6 @@ CornerWeights corner_weights() {
     mass += moments.col(q) * hats.transpose();
   }
   return mass.inverse() * moments;
-}
-
-Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference) {
-  const double l1 = reference.x(), l2 = reference.y(), l0 = 1 - l1 - l2;
-  Eigen::Matrix<double, 6, 1> values;
-  values << l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1), 4 * l1 * l2, 4 * l2 * l0, 4 * l0 * l1;
-  return values;
 }
 
 Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "certify/tensor.hpp"
+#include "fem/cubature.hpp"
+#include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
 #include "fem/scheme.hpp"
 
@@ -35,15 +37,6 @@ class StressValues {
   std::vector<LocalVectors> tau_;
 };
 
-/// A point of the reference triangle with its weight.
-struct WeightedPoint {
-  Point point;
-  double weight;
-};
-
-/// The triangle rule on each of cuts² similar triangles; 1 is the rule itself.
-std::vector<WeightedPoint> composite_rule(int cuts);
-
 /// The points of the triangle rule.
 std::vector<Point> triangle_points();
 
@@ -66,8 +59,7 @@ Quadratic<D> at_nodes(const Eigen::Matrix<double, D, 3>& corners) {
   return nodes;
 }
 
-/// The six functions of P2 at a point of the reference triangle, and their gradients there by columns.
-Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
+/// The gradients of the six functions of P2 at a point of the reference triangle, by columns.
 Eigen::Matrix<double, 2, 6> quadratic_gradients(const Point& reference);
 /// The gradients at the points of the triangle rule.
 const std::array<Eigen::Matrix<double, 2, 6>, TriangleRule::size>& quadratic_gradients();

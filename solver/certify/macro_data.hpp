@@ -1,7 +1,6 @@
 #pragma once
 
 #include "certify/edge_tractions.hpp"
-#include "certify/load_values.hpp"
 #include "certify/macro_element.hpp"
 
 namespace signorini {
@@ -14,6 +13,6 @@ Eigen::Matrix<double, 6, 1> traction_data(const AffineMap& map, int e,
                                           const Eigen::Matrix<double, 2, 3>& traction);
 
 /// The data of σ* on triangle t: its tractions, and −det J J⁻¹ Πf for the divergence.
-MacroData macro_data(const EdgeTractions& tractions, const LoadValues<2>& load, int t, const AffineMap& map);
+MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t, const AffineMap& map);
 
 }  // namespace signorini

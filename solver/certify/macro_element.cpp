@@ -1,9 +1,11 @@
 #include "certify/macro_element.hpp"
 
+#include <cmath>
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "certify/local_fields.hpp"
+#include "fem/triangle_pieces.hpp"
 
 namespace signorini {
 namespace {
@@ -163,28 +165,53 @@ Point MacroElement::node(int number) {
   return (corner(number - 7) + kCentroid) / 2;
 }
 
-std::vector<MacroElement::Place> MacroElement::places(int cuts) {
+namespace {
+
+/// At a point in the reference coordinates of part k.
+MacroElement::Place place_in(int k, const Point& own, double weight) {
+  const Part part(k);
+  MacroElement::Place place{part(own),
+                            weight,
+                            k,
+                            quadratic_basis(own),
+                            bubbles(part(own)),
+                            Eigen::Matrix<double, 2, MacroElement::kNodes>::Zero(),
+                            Eigen::Matrix<double, MacroElement::kNodes, 1>::Zero()};
+  const Eigen::Matrix<double, 2, 6> gradients = part.jacobian.inverse().transpose() * quadratic_gradients(own);
+  const std::array<int, 6> nodes = nodes_of(k);
+  for (int i = 0; i < 6; ++i) {
+    place.displacement_gradients.col(nodes[i]) = gradients.col(i);
+    place.displacement_basis[nodes[i]] = place.piece_basis[i];
+  }
+  return place;
+}
+
+}  // namespace
+
+std::vector<MacroElement::Place> MacroElement::places(const std::vector<WeightedPoint>& rule) {
   std::vector<Place> all;
-  const auto add = [&](int k, const Point& own, double weight) {
-    const Part part(k);
-    Place place{part(own),
-                weight,
-                k,
-                quadratic_basis(own),
-                bubbles(part(own)),
-                Eigen::Matrix<double, 2, kNodes>::Zero(),
-                Eigen::Matrix<double, kNodes, 1>::Zero()};
-    const Eigen::Matrix<double, 2, 6> gradients =
-        part.jacobian.inverse().transpose() * quadratic_gradients(own);
-    const std::array<int, 6> nodes = nodes_of(k);
-    for (int i = 0; i < 6; ++i) {
-      place.displacement_gradients.col(nodes[i]) = gradients.col(i);
-      place.displacement_basis[nodes[i]] = place.piece_basis[i];
-    }
-    all.push_back(place);
-  };
   for (int k = 0; k < 3; ++k)
-    for (const auto& [point, weight] : composite_rule(cuts)) add(k, point, weight / 3);
+    for (const auto& [point, weight] : rule) all.push_back(place_in(k, point, weight / 3));
+  return all;
+}
+
+std::vector<MacroElement::Place> MacroElement::places(const std::vector<WeightedPoint>& rule,
+                                                      const std::array<Point, 3>& triangle) {
+  std::vector<Place> all;
+  for (int k = 0; k < 3; ++k) {
+    const Part part(k);
+    const Eigen::Matrix2d into = part.jacobian.inverse();
+    std::vector<Point> inside;
+    for (const Point& x : triangle) inside.push_back(into * (x - part.origin));
+    for (int side = 0; side < 3; ++side)
+      inside = clip(inside, [&](const Point& own) { return barycentric(own)[side]; });
+    for (std::size_t i = 2; i < inside.size(); ++i) {
+      const Vector one = inside[i - 1] - inside[0], other = inside[i] - inside[0];
+      const double share = std::abs(one.x() * other.y() - one.y() * other.x());
+      for (const auto& [point, weight] : rule)
+        all.push_back(place_in(k, inside[0] + point.x() * one + point.y() * other, share * weight / 3));
+    }
+  }
   return all;
 }
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "problem/field.hpp"
+#include "certify/local_fields.hpp"
 
 namespace signorini {
 
@@ -49,8 +49,9 @@ struct MacroElement {
     Eigen::Matrix<double, kNodes, 1> displacement_basis;
   };
 
-  /// The points of the triangle rule on each part, or on `cuts`² similar triangles of each.
-  static std::vector<Place> places(int cuts);
+  /// The points of the rule on each part; and on each part of what a triangle, in the reference coordinates, has there.
+  static std::vector<Place> places(const std::vector<WeightedPoint>& rule);
+  static std::vector<Place> places(const std::vector<WeightedPoint>& rule, const std::array<Point, 3>& triangle);
 
   /// (xx, yy, xy) of the stress with the given coefficients.
   template <typename Coefficients>

@@ -1,7 +1,9 @@
 #include "certify/macro_values.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -48,21 +50,55 @@ const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
 
 }  // namespace
 
-MacroRule::MacroRule(const Spaces& spaces, int cuts) : places(MacroElement::places(cuts)) {
-  const MacroElement& element = macro_element();
-  for (const MacroElement::Place& place : places) {
-    Values at;
-    for (int k = 0; k < MacroElement::kData; ++k)
-      at.balanced.col(k) = MacroElement::stress(place, element.from_data.col(k));
-    for (int k = 0; k < MacroElement::kFree; ++k)
-      at.free.col(k) = MacroElement::stress(place, element.free.col(k));
-    at.basis = quadratic_basis(place.point);
-    at.gradients = quadratic_gradients(place.point);
-    at.inner_basis = place.displacement_basis.tail<kInner>();
-    at.inner_gradients = place.displacement_gradients.rightCols<kInner>();
-    at.stress = spaces.row.reference_values(place.point);
-    values.push_back(std::move(at));
+MacroRule::MacroRule(const Spaces& spaces, int degree)
+    : MacroRule(spaces, MacroElement::places(rule_of_degree(degree))) {}
+
+MacroRule::MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields)
+    : MacroRule(spaces, std::vector<MacroElement::Place>()) {
+  for (const LawPiece& piece : pieces) {
+    const int degree = piece.degree_of_rule(of_fields, spaces.order);
+    for (MacroElement::Place& place : MacroElement::places(rule_of_degree(degree), piece.place.corners))
+      add(spaces, std::move(place));
+    errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
   }
+}
+
+namespace {
+
+/// Of both pairs of spaces, by their order.
+template <int Degree>
+const MacroRule& macro_rule_of_degree(int order) {
+  static const std::array<MacroRule, 2> rules{MacroRule(spaces_of(Scheme::nonconforming, 2), Degree),
+                                              MacroRule(spaces_of(Scheme::conforming, 2), Degree)};
+  return rules[order];
+}
+
+}  // namespace
+
+const MacroRule& macro_rule(const Spaces& spaces, int degree) {
+  if (degree <= 6) return macro_rule_of_degree<6>(spaces.order);
+  if (degree <= 10) return macro_rule_of_degree<10>(spaces.order);
+  return degree <= 18 ? macro_rule_of_degree<18>(spaces.order) : macro_rule_of_degree<30>(spaces.order);
+}
+
+MacroRule::MacroRule(const Spaces& spaces, std::vector<MacroElement::Place> given) {
+  for (MacroElement::Place& place : given) add(spaces, std::move(place));
+}
+
+void MacroRule::add(const Spaces& spaces, MacroElement::Place place) {
+  const MacroElement& element = macro_element();
+  Values at;
+  for (int k = 0; k < MacroElement::kData; ++k)
+    at.balanced.col(k) = MacroElement::stress(place, element.from_data.col(k));
+  for (int k = 0; k < MacroElement::kFree; ++k)
+    at.free.col(k) = MacroElement::stress(place, element.free.col(k));
+  at.basis = quadratic_basis(place.point);
+  at.gradients = quadratic_gradients(place.point);
+  at.inner_basis = place.displacement_basis.tail<kInner>();
+  at.inner_gradients = place.displacement_gradients.rightCols<kInner>();
+  at.stress = spaces.row.reference_values(place.point);
+  values.push_back(std::move(at));
+  places.push_back(std::move(place));
 }
 
 Eigen::Vector3d mandel(const Tensor<2>& tensor) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "certify/law_pieces.hpp"
 #include "certify/local_fields.hpp"
 #include "certify/macro_element.hpp"
 #include "fem/discretization.hpp"
@@ -11,8 +12,11 @@ namespace signorini {
 
 /// Where the integrals over a macro-element are evaluated, with what does not depend on the triangle.
 struct MacroRule {
-  /// The triangle rule on each part of the macro-element, or on `cuts`² similar triangles of each.
-  MacroRule(const Spaces& spaces, int cuts);
+  /// The rule of this degree on each part of the macro-element.
+  MacroRule(const Spaces& spaces, int degree);
+  /// On each piece of the triangle in each part of the macro-element the rule that it needs for squares of fields of a
+  /// degree, with the errors of the pieces.
+  MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields);
 
   int size() const { return static_cast<int>(places.size()); }
 
@@ -31,7 +35,15 @@ struct MacroRule {
 
   std::vector<MacroElement::Place> places;
   std::vector<Values> values;
+  std::vector<double> errors;  ///< LawPiece::error_of_rule by points; empty if the triangle was not cut
+
+ private:
+  MacroRule(const Spaces& spaces, std::vector<MacroElement::Place> given);
+  void add(const Spaces& spaces, MacroElement::Place place);
 };
+
+/// The rule of a degree of 6, 10, 18 or 30 for one of the two pairs of spaces, made once.
+const MacroRule& macro_rule(const Spaces& spaces, int degree);
 
 /// (xx, yy, √2 xy) of the symmetric part.
 Eigen::Vector3d mandel(const Tensor<2>& tensor);

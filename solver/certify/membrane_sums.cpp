@@ -1,10 +1,11 @@
 #include "certify/triangle_sums.hpp"
 
+#include <cmath>
+
+#include "certify/balanced_load.hpp"
+
 namespace signorini {
 namespace {
-
-/// What a triangle with lifts is cut into along each side, for their integrals.
-constexpr int kCuts = 4;
 
 std::vector<Point> points_of(const std::vector<WeightedPoint>& rule) {
   std::vector<Point> points;
@@ -21,15 +22,25 @@ TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
   skew += other.skew;
   stress += other.stress;
   energy += other.energy;
+  strain += other.strain;
   span += other.span;
   along += other.along;
   known += other.known;
   moved += other.moved;
+  slack += other.slack;
+  energy_slack += other.energy_slack;
   return *this;
 }
 
-MembraneSums::Rule::Rule(const Spaces& spaces, int cuts)
-    : points(composite_rule(cuts)), stress(spaces, points_of(points)) {
+void TriangleSums::add_unknown_strain(double zeta) {
+  if (zeta == 0) return;
+  const double fields = std::sqrt(gap) + std::sqrt(direct_gap) + std::sqrt(correction) + 2 * std::sqrt(span) +
+                        4 * std::sqrt(moved);
+  slack += zeta * (2 * fields + zeta);
+}
+
+MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given)
+    : points(std::move(given)), stress(spaces, points_of(points)) {
   for (const auto& [point, weight] : points) {
     balance.push_back(QuadraticBalance::reference_values(point));
     basis.push_back(quadratic_basis(point));
@@ -39,12 +50,7 @@ MembraneSums::Rule::Rule(const Spaces& spaces, int cuts)
 
 MembraneSums::MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress,
                            const AdmissiblePair& pair)
-    : problem_(problem),
-      stress_(stress),
-      pair_(pair),
-      balance_(problem),
-      plain_(problem.spaces(), 1),
-      composite_(problem.spaces(), kCuts) {}
+    : problem_(problem), stress_(stress), pair_(pair), balance_(problem) {}
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
     : MembraneSums(pairs.problem(), pairs.stress(), pairs.first()) {
@@ -52,7 +58,48 @@ MembraneSums::MembraneSums(const PatchPairs& pairs)
   change_ = &pairs.change();
 }
 
-TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LoadValues<1>& load) const {
+const MembraneSums::Rule& MembraneSums::rule_of_degree(int degree) const {
+  const auto found = rules_.find(degree);
+  if (found != rules_.end()) return found->second;
+  return rules_.emplace(degree, Rule(problem_.spaces(), signorini::rule_of_degree(degree))).first->second;
+}
+
+TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
+  const bool lifted = pair_.v.is_lifted(t), cubic = balance_(t).has_value();
+  const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
+  const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
+  TriangleSums sums;
+  const std::vector<LawPiece>& pieces = laws.cut(t);
+  const auto degree_on = [&](const LawPiece& piece) {
+    return std::max(of_load, piece.degree_of_rule(of_fields, problem_.spaces().order));
+  };
+  if (pieces.empty()) {
+    const int degree = degree_on(laws.whole(t));
+    integrate(t, rule_of_degree(degree), laws.whole(t).error_of_rule(degree, of_fields), law, sums);
+  }
+  for (const LawPiece& piece : pieces) {
+    const int degree = degree_on(piece);
+    std::vector<WeightedPoint> points;
+    for (const auto& [point, weight] : signorini::rule_of_degree(degree))
+      points.push_back({piece.place(point), piece.place.share * weight});
+    integrate(t, Rule(problem_.spaces(), std::move(points)), piece.error_of_rule(degree, of_fields), law, sums);
+  }
+
+  // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
+  const ProjectedLoad& load = problem_.body[t];
+  const double area = AffineMap(problem_.mesh.corners(t)).determinant / 2;
+  sums.energy_slack += load.uncertain_work * pair_.v.largest_on(t);
+  const AdmissibleDisplacement::LiftRest rest = pair_.v.rest_of_lifts(t);
+  if (rest.slope > 0) {
+    const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
+    sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
+                         rest.value * (std::sqrt(area) * load.rest + area * load.balanced.norm());
+    sums.add_unknown_strain(zeta);
+  }
+  return sums;
+}
+
+void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);
@@ -61,45 +108,54 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LoadValues<
     w = v - second_->v.on<1>(t);
     potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
   }
-  const Quadratic<1> balanced = load.projection(t).balanced;
-  const std::optional<QuadraticBalance::Data> balance = balance_(t, load);
+  const Quadratic<1> balanced = balanced_load<1>(problem_, t);
+  const std::optional<QuadraticBalance::Data> balance = balance_(t);
   const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
-  const Rule& rule = lifted ? composite_ : plain_;
-  TriangleSums sums;
+  double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
     const auto& [reference, share] = rule.points[q];
-    const Point x = map(reference);
-    const auto& [compliance, stiffness] = law(x);
+    const auto& [compliance, stiffness] = law(map(reference));
     const double weight = share * map.determinant;
     const Tensor<1> sigma = rule.stress(q, map, stress_.col(t));
     Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
-    // The rest of f is orthogonal to v, where that is quadratic.
-    double f = balanced * rule.basis[q];
     if (lifted) {
+      const double quadratic = value[0];
       pair_.v.add_lifts<1>(t, reference, inverse, value, slope);
-      f = problem_.problem.body(0, x);
+      lifted_square += weight * (value[0] - quadratic) * (value[0] - quadratic);
     }
     Tensor<1> correction = Tensor<1>::Zero();
     if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
     if (change_) correction += rule.stress(q, map, change_->col(t));
     if (balance) correction += map.jacobian * (rule.balance[q] * *balance) / map.determinant;
     const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
+    const double of_strain = weight * slope.dot(stiffness * slope),
+                 of_correction = weight * correction.dot(compliance * correction),
+                 of_sigma = weight * sigma.dot(compliance * sigma);
     sums.gap += weight * gap.dot(stiffness * gap);
     sums.direct_gap += weight * direct_gap.dot(stiffness * direct_gap);
-    sums.correction += weight * correction.dot(compliance * correction);
-    sums.stress += weight * sigma.dot(compliance * sigma);
-    sums.energy += weight * (0.5 * slope.dot(stiffness * slope) - f * value[0]);
-    if (!second_) continue;
-    const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),
-                    moved = stiffness * strain,
-                    tau = curl(inverse, potential_of_tau * rule.gradients[q].transpose());
-    sums.span += weight * (moved + tau).dot(compliance * (moved + tau));
-    sums.along += weight * (moved + tau).dot(compliance * correction);
-    sums.known += weight * gap.dot(moved - tau);
-    sums.moved += weight * strain.dot(moved);
+    sums.correction += of_correction;
+    sums.stress += of_sigma;
+    sums.strain += of_strain / 2;
+    const double load = balanced * rule.basis[q];
+    sums.energy += of_strain / 2 - weight * load * value[0];
+    double all_fields = 2 * of_sigma + 3 * of_correction + of_strain;
+    if (second_) {
+      const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),
+                      moved = stiffness * strain,
+                      tau = curl(inverse, potential_of_tau * rule.gradients[q].transpose());
+      const double of_moved = weight * strain.dot(moved);
+      sums.span += weight * (moved + tau).dot(compliance * (moved + tau));
+      sums.along += weight * (moved + tau).dot(compliance * correction);
+      sums.known += weight * gap.dot(moved - tau);
+      sums.moved += of_moved;
+      all_fields += 2 * of_moved + 2 * weight * tau.dot(compliance * tau);
+    }
+    sums.slack += 2 * error * all_fields;
+    sums.energy_slack += error * of_strain;
   }
-  return sums;
+  const ProjectedLoad& body = problem_.body[t];
+  sums.energy_slack += body.rest * std::sqrt(lifted_square);
 }
 
 }  // namespace signorini

@@ -1,30 +1,17 @@
 #pragma once
 
-#include "certify/load_values.hpp"
-#include "certify/tensor.hpp"
-#include "fem/traction_field.hpp"
+#include "certify/law_pieces.hpp"
+#include "fem/discretization.hpp"
 
 namespace signorini {
 
 /// What the discrete equilibrium leaves out of the load, in the energy norm: a bound of
 ///
-///     (f − Πf, w) + <t − Πt, w>  ≤  oscillation · ‖w‖_E
+///     (r − Π₁r, w) + <q − Π₁q, w>  ≤  oscillation · ‖w‖_E,   r = f − Πf,   q = t − Πt,
 ///
-/// on one triangle, for every displacement w, with the projections Π onto P2, so that w counts only up to
-/// linear functions at least: linear_remainder().
+/// on one triangle, for every displacement w: with the projections Π₁ onto P1 w counts only up to linear functions,
+/// linear_remainder(). What the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp.
 template <int D>
-class Oscillation {
- public:
-  explicit Oscillation(const Discretization& problem)
-      : problem_(problem), traction_(problem.problem, problem.mesh) {}
-
-  double operator()(int t, LawField<D>& law, const LoadValues<D>& load) const;
-
- private:
-  double of_traction(int edge) const;
-
-  const Discretization& problem_;
-  TractionField traction_;
-};
+double oscillation(const Discretization& problem, int t, const LawOnMesh& laws);
 
 }  // namespace signorini

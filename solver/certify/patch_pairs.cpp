@@ -26,7 +26,7 @@ VectorField on_cut(const Mesh& mesh, const std::vector<int>& cut,
     }
     return value(nearest, s_there, normal);
   };
-  return Field(at_nearest, "the certificate's patch");
+  return Field::quadratic_on_edges(at_nearest, "the certificate's patch");
 }
 
 Fixed displacement_on_cut(const Discretization& whole, const AdmissibleDisplacement& v, const Patch& patch) {
@@ -82,7 +82,7 @@ PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stres
       second_(second_pair(progress)) {}
 
 bool PatchPairs::are_admissible() const {
-  return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.unmet.empty();
+  return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.lacks.empty();
 }
 
 AdmissiblePair PatchPairs::first_pair(Progress& progress) const {

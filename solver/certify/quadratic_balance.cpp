@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 
+#include "certify/balanced_load.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
@@ -57,23 +58,23 @@ Eigen::Matrix<double, kData, kData> functions_of_data() {
 }  // namespace
 
 bool QuadraticBalance::is_needed() const {
-  if (problem_.load_varies) return true;
+  if (problem_.body.varies()) return true;
   for (int edge = 0; edge < static_cast<int>(problem_.mesh.edges.size()); ++edge)
-    if (traction_.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
+    if (problem_.traction.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
   return false;
 }
 
 Eigen::Vector3d QuadraticBalance::lacking_on(int edge) const {
-  const auto own = [&](double s) { return traction_(edge, 0, s); };
+  const auto own = [&](double s) { return problem_.traction(edge, 0, s); };
   const Eigen::Vector3d all = projection_at_nodes(2, own),
                         lacking = all - projection_at_nodes(problem_.spaces().order, own);
   return lacking.norm() <= kRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
 }
 
-std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, const LoadValues<1>& load) const {
+std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t) const {
   const int order = problem_.spaces().order;
   const Mesh& mesh = problem_.mesh;
-  const Quadratic<1> balanced = load.projection(t).balanced;
+  const Quadratic<1> balanced = balanced_load<1>(problem_, t);
   const double twice_area = AffineMap(mesh.corners(t)).determinant;
   Quadratic<1> lacking = balanced;
   if (order == 0)
@@ -85,7 +86,7 @@ std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t, const 
   data.tail<6>() = -twice_area * lacking.transpose();
   for (int e = 0; e < 3; ++e) {
     const int edge = mesh.triangle_edges[t][e];
-    if (!traction_.acts_on(edge)) continue;
+    if (!problem_.traction.acts_on(edge)) continue;
     Eigen::Vector3d own = mesh.length(edge) * lacking_on(edge);
     if (mesh.triangles[t][(e + 1) % 3] != mesh.edges[edge][0]) std::swap(own[0], own[1]);
     data.segment<3>(3 * e) = own;

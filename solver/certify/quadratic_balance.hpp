@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "certify/load_values.hpp"
-#include "fem/traction_field.hpp"
+#include "certify/local_fields.hpp"
+#include "fem/discretization.hpp"
 
 namespace signorini {
 
@@ -13,8 +13,7 @@ namespace signorini {
 ///     div τ = Π_h f − Πf,   τn = Πt − Π_h t on Γ_F,   τn = 0 on the other edges.
 class QuadraticBalance {
  public:
-  explicit QuadraticBalance(const Discretization& problem)
-      : problem_(problem), traction_(problem.problem, problem.mesh) {}
+  explicit QuadraticBalance(const Discretization& problem) : problem_(problem) {}
 
   /// τn |e| at both ends and in the middle of edge 0, 1, 2, and the divergence, times det J, at the nodes of
   /// P2.
@@ -26,7 +25,7 @@ class QuadraticBalance {
   bool is_needed() const;
 
   /// None where the data are constant or balanced by σ_h.
-  std::optional<Data> operator()(int t, const LoadValues<1>& load) const;
+  std::optional<Data> operator()(int t) const;
 
   /// Times the data, which must balance: τ at a point of the reference triangle, before the Piola map. Of the
   /// functions with these data, which differ by the curl of the cubic bubble, the least.
@@ -39,7 +38,6 @@ class QuadraticBalance {
   Eigen::Vector3d lacking_on(int edge) const;
 
   const Discretization& problem_;
-  TractionField traction_;
 };
 
 }  // namespace signorini

@@ -2,11 +2,10 @@
 
 #include <Eigen/LU>
 
-#include "certify/load_values.hpp"
+#include "certify/balanced_load.hpp"
 #include "certify/local_fields.hpp"
 #include "certify/tensor.hpp"
 #include "fem/lagrange.hpp"
-#include "fem/traction_field.hpp"
 
 namespace signorini {
 namespace {
@@ -129,7 +128,7 @@ Eigen::Matrix<double, 6, 3> products_with_hats() {
 
 void add_work_of_traction(const Discretization& problem, Eigen::VectorXd& work) {
   const Mesh& mesh = problem.mesh;
-  const TractionField traction(problem.problem, mesh);
+  const TractionField& traction = problem.traction;
   const Eigen::Index points = static_cast<Eigen::Index>(mesh.points.size());
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (!traction.acts_on(edge)) continue;

@@ -14,16 +14,24 @@ struct Totals {
   /// Adds the triangles that have owners. `sums` are those of the pair, and of the second one if there is
   /// one: MembraneSums or ElasticSums.
   template <int D, typename Sums>
-  void add(const Discretization& problem, const LoadValues<D>& load, const AdmissiblePair& pair, Sums sums,
+  void add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
            const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr);
 
   TriangleSums all;
   double contact = 0, oscillation_square = 0;
+  double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
+  double carried = 0;  ///< CarriedLoads::norm
   Eigen::VectorXd shares;
+
+ private:
+  template <int D>
+  void add_work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v, const Owners& owners);
 };
 
-/// The least of ‖δ − θ s‖ R + θ K over θ ∈ [0, 1], from ‖δ‖², ‖s‖² and (s, δ).
-double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known);
+/// The least of ‖δ − θ s‖ R + θ K over θ ∈ [0, 1], from ‖δ‖², ‖s‖², (s, δ) and K, each of which may be larger by the
+/// slack.
+double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known,
+                          double slack = 0);
 
 /// With e = σ − σ*, b = E ε(u − v), δ = σ* − sym σ_h and the oscillation o, the identity of the pair (σ*, v):
 ///
@@ -43,6 +51,8 @@ double least_over_the_way(double delta_square, double s_square, double s_delta, 
 ///
 /// because p₂* ≥ 0 and v₂n ≤ g. So (e + b, δ) − 2 <p*, g − u_n> − 2 <p, g − v_n> ≤ ‖δ − s‖ R + K, and between
 /// the two pairs the same holds for θ s and θ K. The skew part of σ_h is orthogonal to e + δ.
+///
+/// Each sum counts with its slack in the direction that makes the bound larger.
 ErrorBound bound_from(const Totals& totals);
 
 }  // namespace signorini

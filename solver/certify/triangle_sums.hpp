@@ -1,7 +1,10 @@
 #pragma once
 
+#include <map>
+
 #include "certify/admissible_pair.hpp"
 #include "certify/edge_tractions.hpp"
+#include "certify/law_pieces.hpp"
 #include "certify/macro_values.hpp"
 #include "certify/patch_pairs.hpp"
 #include "certify/quadratic_balance.hpp"
@@ -17,28 +20,39 @@ struct TriangleSums {
   double correction = 0;  ///< ‖δ‖²_C
   double skew = 0;        ///< ‖skew σ_h‖²_C
   double stress = 0;      ///< ‖σ_h‖²_C
-  double energy = 0;      ///< ½ ‖ε(v)‖²_E − (f, v)
+  double energy = 0;      ///< ½ ‖ε(v)‖²_E − (Πf, v)
+  double strain = 0;      ///< ½ ‖ε(v)‖²_E
   double span = 0;        ///< ‖E ε(w) + τ‖²_C
   double along = 0;       ///< (E ε(w) + τ, δ)_C
   double known = 0;       ///< (σ* − E ε(v), E ε(w) − τ)_C
   double moved = 0;       ///< ‖ε(w)‖²_E
 
+  /// What each of the above, and every product of its fields, may be off by at most: for the law is no polynomial, and
+  /// of some of v there is but a bound.
+  double slack = 0;
+  double energy_slack = 0;  ///< and ½ ‖ε(v)‖²_E − (f, v)
+
   TriangleSums& operator+=(const TriangleSums& other);
+  /// Strains of the norm ζ in v that are not among the sums.
+  void add_unknown_strain(double zeta);
 };
 
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v
 /// is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
+///
+/// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has beyond that
+/// counts twice, in the integral and in the rule, whose weights are positive.
 class MembraneSums {
  public:
   MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
   explicit MembraneSums(const PatchPairs& pairs);
 
-  TriangleSums operator()(int t, LawField<1>& law, const LoadValues<1>& load) const;
+  TriangleSums operator()(int t, LawField<1>& law, const LawOnMesh& laws) const;
 
  private:
   /// Where the integrals are evaluated, with what does not depend on the triangle.
   struct Rule {
-    Rule(const Spaces& spaces, int cuts);
+    Rule(const Spaces& spaces, std::vector<WeightedPoint> points);
 
     std::vector<WeightedPoint> points;
     StressValues<1> stress;
@@ -47,13 +61,16 @@ class MembraneSums {
     std::vector<Eigen::Matrix<double, 2, 6>> gradients;
   };
 
+  const Rule& rule_of_degree(int degree) const;
+  void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
+
   const Discretization& problem_;
   const Eigen::MatrixXd& stress_;
   const AdmissiblePair& pair_;
   const AdmissiblePair* second_ = nullptr;
   const Eigen::MatrixXd* change_ = nullptr;
   const QuadraticBalance balance_;
-  Rule plain_, composite_;
+  mutable std::map<int, Rule> rules_;  ///< by degree, as far as they were needed
 };
 
 /// Elastic body: σ* is the symmetric stress on the macro-element that has the tractions of EdgeTractions, is
@@ -65,7 +82,7 @@ class ElasticSums {
   ElasticSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
-  TriangleSums operator()(int t, LawField<2>& law, const LoadValues<2>& load);
+  TriangleSums operator()(int t, LawField<2>& law, const LawOnMesh& laws);
 
  private:
   using Given = MacroValues<1>::Given;
@@ -79,18 +96,21 @@ class ElasticSums {
 
   using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
 
-  Given given_on(int t, const AffineMap& map, const LoadValues<2>& load) const;
+  Given given_on(int t, const AffineMap& map) const;
   const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
+  TriangleSums by_norms(const MacroNorms& norms, const Given& given, Inner& inner) const;
+  TriangleSums by_points(const AffineMap& map, const MacroRule& rule, Given given, double error_of_whole,
+                         LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
-  double work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
-                      const Inner& inner, const LoadValues<2>& load) const;
+  void add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given, const Inner& inner,
+                        TriangleSums& sums) const;
+  void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
   const Discretization& problem_;
   const Solution& solution_;
   const AdmissibleDisplacement& v_;
   const EdgeTractions& tractions_;
   const bool has_load_;
-  const MacroRule plain_, composite_;
   PerShape<Shape> shapes_;
 };
 

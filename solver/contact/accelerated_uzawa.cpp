@@ -7,7 +7,6 @@
 #include <Spectra/SymEigsSolver.h>
 
 #include "contact/multilevel_scaling.hpp"
-#include "contact/residuals.hpp"
 
 namespace signorini {
 namespace {
@@ -35,7 +34,7 @@ class Iterate {
       : contact_(contact),
         diagonal_(contact.s.diagonal()),
         step_(kPart * 2 / largest_eigenvalue(contact)),
-        pressure_scale_(contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
+        mean_stress_(kSmallPart * contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
         scaling_(contact.s),
         lambda_(start.size() ? start : Eigen::VectorXd::Zero(contact.size())) {
     evaluate_gradient();
@@ -53,9 +52,10 @@ class Iterate {
 
   const Eigen::VectorXd& clearance() const { return lambda_; }
 
-  ContactResiduals residuals() const {
-    return contact_residuals(lambda_, g_.cwiseQuotient(contact_.weight), contact_.weight, pressure_scale_);
-  }
+  bool meets(double tolerance) const { return residuals().largest() <= tolerance || is_rounding(); }
+
+  /// From now on.
+  void compare_with(double mean_stress) { mean_stress_ = mean_stress; }
 
   /// The conjugate gradients carry g along; this puts an end to what rounding has made of it.
   void refresh() {
@@ -64,6 +64,19 @@ class Iterate {
   }
 
  private:
+  ContactResiduals residuals() const {
+    return contact_residuals(lambda_, g_.cwiseQuotient(contact_.weight), contact_.weight, mean_stress_);
+  }
+
+  /// Whether no violation can be told from the rounding of S λ − c.
+  bool is_rounding() const {
+    const double rounding = kRounding * (diagonal_.maxCoeff() * lambda_.lpNorm<Eigen::Infinity>() +
+                                         contact_.c.lpNorm<Eigen::Infinity>());
+    for (Eigen::Index i = 0; i < g_.size(); ++i)
+      if ((lambda_[i] > 0 ? std::abs(g_[i]) : -g_[i]) > rounding) return false;
+    return true;
+  }
+
   /// Of the longest step with which the expansion still never raises the energy.
   static constexpr double kPart = 0.95;
 
@@ -168,13 +181,14 @@ class Iterate {
   }
 
   static constexpr double kRounding = 1e-13;
+  static constexpr double kSmallPart = 1e-4;
   static constexpr const char* kSingular =
       "the contact problem is singular: contact holds the body only just";
 
   const ContactComplement& contact_;
   const Eigen::VectorXd diagonal_;
   const double step_;
-  const double pressure_scale_;
+  double mean_stress_;
   MultilevelScaling scaling_;
   Eigen::VectorXd lambda_, last_, g_;
   std::vector<int> open_;              ///< where the conjugate gradients work
@@ -186,13 +200,15 @@ class Iterate {
 }  // namespace
 
 ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const Eigen::VectorXd& start) {
+                                Progress& progress, const MeanStress& mean_stress,
+                                const Eigen::VectorXd& start) {
   Iterate iterate(contact, start);
-  const auto converged = [&] { return iterate.residuals().largest() <= settings.tolerance; };
+  const auto converged = [&] { return iterate.meets(settings.tolerance); };
   while (progress.iterations() < settings.max_iterations) {
     const bool in_time = progress.record(iterate.step());
     if (converged()) {
       iterate.refresh();
+      if (converged()) iterate.compare_with(mean_stress(iterate.clearance()));
       if (converged()) return {iterate.clearance(), Outcome::converged};
     }
     if (!in_time) return {iterate.clearance(), Outcome::time_limit};

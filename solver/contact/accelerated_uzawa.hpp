@@ -1,6 +1,7 @@
 #pragma once
 
 #include "contact/active_set.hpp"
+#include "contact/residuals.hpp"
 
 namespace signorini {
 
@@ -11,7 +12,13 @@ namespace signorini {
 /// *Optimal quadratic programming algorithms*, 2009, chapter 5): the count hardly grows with 1/h. Converges
 /// for every positive definite S, and for a semidefinite one if the problem has a solution, at every scale of
 /// units, from every start ≥ 0; without one, from 0. Throws SolveError if nothing holds the body.
+///
+/// It ends when the contact residuals are below the tolerance, or rounding. They are those of the answer: S
+/// does not know the stress in the body, so that a small part of the pressures at λ = 0 stands for it until
+/// they are met; then `mean_stress` is asked, and the iteration goes on with what it says until they are met
+/// by that. It is asked last for the clearance of a result that converged.
 ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const Eigen::VectorXd& start = {});
+                                Progress& progress, const MeanStress& mean_stress,
+                                const Eigen::VectorXd& start = {});
 
 }  // namespace signorini

@@ -1,5 +1,6 @@
 #include "contact/active_set.hpp"
 
+#include <limits>
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -47,17 +48,41 @@ std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, 
   return clearance;
 }
 
+/// A closed unknown that contact lets go of last sets the body free to move at no cost. The first of the open
+/// ones that this motion closes; nothing if it closes none.
+std::optional<int> first_to_close(const ContactComplement& contact, const Closed& closed,
+                                  const Eigen::VectorXd& clearance, int opening) {
+  const std::vector<int> open = open_indices(closed);
+  const Eigen::MatrixXd s = contact.s(open, open);
+  const Eigen::VectorXd coupled = contact.s(open, opening);
+  const Eigen::VectorXd motion = -s.llt().solve(coupled);
+  std::optional<int> first;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const double change = motion[static_cast<Eigen::Index>(k)];
+    const double way = std::max(0., clearance[open[k]]) / -change;
+    if (change < 0 && way < shortest) shortest = way, first = open[k];
+  }
+  return first;
+}
+
 /// Exchanges the violating indices, or the first half of them as often as it takes to keep the open part of
-/// S regular.
-Eigen::VectorXd exchange(const ContactComplement& contact, std::vector<int> wrong, Closed& closed) {
+/// S regular, and the last of them for one that closes instead.
+Eigen::VectorXd exchange(const ContactComplement& contact, std::vector<int> wrong,
+                         const Eigen::VectorXd& clearance, Closed& closed) {
   for (;; wrong.resize((wrong.size() + 1) / 2)) {
     Closed next = closed;
     for (const int i : wrong) next[i] = !next[i];
-    const auto clearance = solve_for_open(contact, next);
-    if (!clearance && wrong.size() > 1) continue;
-    if (!clearance) throw SolveError("the contact problem is singular: contact holds the body only just");
+    auto found = solve_for_open(contact, next);
+    if (!found && wrong.size() > 1) continue;
+    if (!found) {
+      const auto closing = first_to_close(contact, closed, clearance, wrong[0]);
+      if (closing) next[*closing] = true;
+      found = solve_for_open(contact, next);
+    }
+    if (!found) throw SolveError("the contact problem is singular: contact holds the body only just");
     closed = next;
-    return *clearance;
+    return *found;
   }
 }
 
@@ -114,7 +139,7 @@ ContactResult active_set(const ContactComplement& contact, const ActiveSet& sett
       wrong.resize(1);
     }
     const Eigen::VectorXd last = clearance;
-    clearance = exchange(contact, wrong, closed);
+    clearance = exchange(contact, wrong, last, closed);
     force = contact.s * clearance - contact.c;
     if (!progress.record(record_of(contact, last, clearance, force, closed)))
       return {clearance.cwiseMax(0), Outcome::time_limit};

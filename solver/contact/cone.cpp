@@ -10,8 +10,8 @@ constexpr double kRounding = 1e-10;
 }  // namespace
 
 /// Lawson, Hanson 1974, non-negative least squares: the distance to the cone falls strictly with every
-/// generator that joins the basis, and a basis has at most three.
-bool is_inside_cone(const std::vector<Eigen::VectorXd>& generators, const Eigen::VectorXd& target) {
+/// generator that joins the basis, and a basis has no more of them than dimensions.
+Eigen::VectorXd beyond_cone(const std::vector<Eigen::VectorXd>& generators, const Eigen::VectorXd& target) {
   std::vector<int> basis;
   Eigen::VectorXd weights, residual = target;
   const auto fit = [&] {
@@ -22,7 +22,7 @@ bool is_inside_cone(const std::vector<Eigen::VectorXd>& generators, const Eigen:
     return fitted;
   };
   for (std::size_t step = 0; step <= 3 * generators.size() + 10; ++step) {
-    if (residual.norm() <= kRounding * target.norm()) return true;
+    if (residual.norm() <= kRounding * target.norm()) return Eigen::VectorXd::Zero(target.size());
     int best = -1;
     double steepest = kRounding * target.norm();
     for (int i = 0; i < static_cast<int>(generators.size()); ++i) {
@@ -30,7 +30,7 @@ bool is_inside_cone(const std::vector<Eigen::VectorXd>& generators, const Eigen:
       const double slope = size > 0 ? generators[i].dot(residual) / size : 0;
       if (slope > steepest) best = i, steepest = slope;
     }
-    if (best < 0) return false;
+    if (best < 0) return residual;
     basis.push_back(best);
     weights.conservativeResize(basis.size());
     weights[weights.size() - 1] = 0;
@@ -51,13 +51,10 @@ bool is_inside_cone(const std::vector<Eigen::VectorXd>& generators, const Eigen:
       for (Eigen::Index k = 0; k < weights.size(); ++k)
         if (k != leaving) kept.push_back(weights[k]);
       weights = Eigen::Map<Eigen::VectorXd>(kept.data(), static_cast<Eigen::Index>(kept.size()));
-      if (basis.empty()) {
-        residual = target;
-        return false;
-      }
+      if (basis.empty()) return target;
     }
   }
-  return false;
+  return residual;
 }
 
 }  // namespace signorini

@@ -15,6 +15,31 @@ double relative(double value, double scale) {
   return scale > 0 ? value / scale : 1;
 }
 
+/// ‖σ_h‖ in L2, gathered triangle by triangle, and the sizes that tell it from rounding.
+class StressNorm {
+ public:
+  /// `strain` is M σ and `rise` Bᵀ u, the terms of the first equation.
+  void add(const LocalMatrix& compliance, const LocalMatrix& stress_mass, const LocalVector& sigma,
+           const LocalVector& strain, const LocalVector& rise) {
+    square_ += sigma.dot(stress_mass.lazyProduct(sigma));
+    largest_term_ =
+        std::max({largest_term_, strain.lpNorm<Eigen::Infinity>(), rise.lpNorm<Eigen::Infinity>()});
+    largest_compliance_ = std::max(largest_compliance_, compliance.diagonal().maxCoeff());
+  }
+
+  double largest_term() const { return largest_term_; }
+
+  /// A small part of ‖σ‖ for displacements of the same size that strain the body as a whole: the diagonal of
+  /// M is a compliance.
+  double no_stress() const { return 1e-4 * relative(largest_term_, largest_compliance_); }
+
+  /// ‖σ_h‖, or what counts as no stress at all.
+  double value() const { return std::max(std::sqrt(square_), no_stress()); }
+
+ private:
+  double square_ = 0, largest_term_ = 0, largest_compliance_ = 0;
+};
+
 /// One pass over the triangles that gathers what the residuals of equilibrium, of the constitutive law and
 /// of symmetry need.
 class Balance {
@@ -35,32 +60,27 @@ class Balance {
       skew_[point] += problem.coupling_load[problem.traces.rotation_at(point)];
   }
 
-  /// ‖σ_h‖, or what counts as no stress at all.
-  double stress_norm() const { return std::max(std::sqrt(stress_square_), no_stress()); }
+  double stress_norm() const { return norm_.value(); }
 
   double equilibrium() const {
     const double size = std::sqrt(problem_.mesh.area());
     const double volume =
         relative(std::sqrt(imbalance_square_), std::sqrt(load_square_) + stress_norm() / size);
-    return std::max(volume, relative(flux_.lpNorm<Eigen::Infinity>(), std::max(largest_flux_, no_stress())));
+    return std::max(volume,
+                    relative(flux_.lpNorm<Eigen::Infinity>(), std::max(largest_flux_, norm_.no_stress())));
   }
 
   double constitutive() const {
-    return relative(std::max(trace_.lpNorm<Eigen::Infinity>(), interior_), largest_term_);
+    return relative(std::max(trace_.lpNorm<Eigen::Infinity>(), interior_), norm_.largest_term());
   }
 
   double symmetry() const {
     const double edge = std::sqrt(problem_.mesh.area() / problem_.triangles());
     return relative(skew_.lpNorm<Eigen::Infinity>(),
-                    std::max(skew_terms_.lpNorm<Eigen::Infinity>(), edge * no_stress()));
+                    std::max(skew_terms_.lpNorm<Eigen::Infinity>(), edge * norm_.no_stress()));
   }
 
  private:
-  /// A body that moves without strain has only rounding for stress, and nothing to compare it with. This is a
-  /// small part of ‖σ‖ for displacements of the same size that strain the body as a whole: the diagonal of M
-  /// is a compliance.
-  double no_stress() const { return 1e-4 * relative(largest_term_, largest_compliance_); }
-
   void add_triangle(int t) {
     const Shape& shape = shapes_(t, [&](const ElementMatrices& matrices) -> Shape {
       const LocalMatrix& mass = matrices.displacement_mass;
@@ -73,15 +93,12 @@ class Balance {
     const LocalVector imbalance = b.lazyProduct(sigma) + load;
     imbalance_square_ += imbalance.dot(shape.mass_inverse.lazyProduct(imbalance));
     load_square_ += load.dot(shape.mass_inverse.lazyProduct(load));
-    stress_square_ += sigma.dot(shape.stress_mass.lazyProduct(sigma));
 
     // M σ + Bᵀ u + Aᵀ γ is m on the edges (seen from this side), and 0 for the functions without flux.
     const LocalVector strain = matrices.compliance.lazyProduct(sigma), rise = b.transpose().lazyProduct(u);
+    norm_.add(matrices.compliance, shape.stress_mass, sigma, strain, rise);
     LocalVector term = strain + rise;
     for (int z = 0; z < matrices.skew.rows(); ++z) add_corner(t, z, matrices.skew.row(z), sigma, term);
-    largest_term_ =
-        std::max({largest_term_, strain.lpNorm<Eigen::Infinity>(), rise.lpNorm<Eigen::Infinity>()});
-    largest_compliance_ = std::max(largest_compliance_, matrices.compliance.diagonal().maxCoeff());
     const int n = problem_.traces.traces_per_triangle();
     if (term.size() > n)
       interior_ = std::max(interior_, term.tail(term.size() - n).lpNorm<Eigen::Infinity>());
@@ -142,26 +159,47 @@ class Balance {
   const Solution& solution_;
   const Discretization& problem_;
   int per_edge_;
-  int traces_;             ///< degrees of freedom of m
-  Eigen::VectorXd flux_;   ///< sum of the outward fluxes of both sides
-  Eigen::VectorXd trace_;  ///< difference of the traces seen from both sides
-  Eigen::VectorXd skew_;   ///< (as σ, φ_z) and the couple for each point
+  int traces_;                  ///< degrees of freedom of m
+  Eigen::VectorXd flux_;        ///< sum of the outward fluxes of both sides
+  Eigen::VectorXd trace_;       ///< difference of the traces seen from both sides
+  Eigen::VectorXd skew_;        ///< (as σ, φ_z) and the couple for each point
   Eigen::VectorXd skew_terms_;  ///< the sums of the sizes of the terms of (as σ, φ_z)
   PerShape<Shape> shapes_;
   double interior_ = 0;
-  double imbalance_square_ = 0, load_square_ = 0, stress_square_ = 0;
-  double largest_flux_ = 0, largest_term_ = 0, largest_compliance_ = 0;
+  StressNorm norm_;
+  double imbalance_square_ = 0, load_square_ = 0;
+  double largest_flux_ = 0;
 };
 
 }  // namespace
 
 ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen::VectorXd& pressure,
-                                   const Eigen::VectorXd& weight, double pressure_scale) {
+                                   const Eigen::VectorXd& weight, double mean_stress) {
   if (clearance.size() == 0) return {};
+  const double scale = std::max(mean_stress, pressure.lpNorm<Eigen::Infinity>());
   const double weighted = weight.dot(clearance.cwiseAbs());
   return {relative(std::max(0., -clearance.minCoeff()), clearance.lpNorm<Eigen::Infinity>()),
-          relative(std::max(0., -pressure.minCoeff()), pressure_scale),
-          relative(weight.dot(clearance.cwiseProduct(pressure).cwiseAbs()), weighted * pressure_scale)};
+          relative(std::max(0., -pressure.minCoeff()), scale),
+          relative(weight.dot(clearance.cwiseProduct(pressure).cwiseAbs()), weighted * scale)};
+}
+
+double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
+                   const Eigen::MatrixXd& displacement) {
+  struct Shape {
+    LocalMatrix compliance, stress_mass;
+  };
+  StressNorm norm;
+  PerShape<Shape> shapes(problem);
+  const LocalMatrix& b = problem.spaces().divergence;
+  for (int t = 0; t < problem.triangles(); ++t) {
+    const Shape& shape = shapes(t, [&](const ElementMatrices& matrices) -> Shape {
+      return {matrices.compliance, problem.element.stress_mass(problem.mesh, t)};
+    });
+    const LocalVector sigma = stress.col(t), u = displacement.col(t);
+    norm.add(shape.compliance, shape.stress_mass, sigma, shape.compliance.lazyProduct(sigma),
+             b.transpose().lazyProduct(u));
+  }
+  return norm.value() / std::sqrt(problem.mesh.area());
 }
 
 double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
@@ -178,10 +216,8 @@ Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
     weight[i] = problem.clearance.rows[i].weight;
     if (problem.clearance.rows[i].unknown >= 0) tested.push_back(i);
   }
-  const double stress_scale = balance.stress_norm() / std::sqrt(problem.mesh.area());
-  const double pressure_scale = std::max(stress_scale, pressure.lpNorm<Eigen::Infinity>());
-  const ContactResiduals contact =
-      contact_residuals(clearance(tested), pressure(tested), weight(tested), pressure_scale);
+  const ContactResiduals contact = contact_residuals(clearance(tested), pressure(tested), weight(tested),
+                                                     balance.stress_norm() / std::sqrt(problem.mesh.area()));
   return {balance.equilibrium(), balance.constitutive(),  contact.penetration,
           contact.tension,       contact.complementarity, balance.symmetry()};
 }

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "contact/cone.hpp"
+#include "fem/rigid_frame.hpp"
 #include "mesh/bodies.hpp"
 #include "observer.hpp"
 
@@ -14,42 +15,36 @@ namespace {
 
 using Motions = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a motion a column
 
-/// One body of the mesh: the displacements of its rigid motions at points, as rows of linear functionals of the
-/// motion.
+RigidFrame frame_of(const Discretization& problem, const std::vector<int>& triangles) {
+  Point centre(0, 0);
+  double area = 0;
+  for (const int t : triangles) {
+    const double own = 0.5 * AffineMap(problem.mesh.corners(t)).determinant;
+    centre += own * problem.mesh.centroid(t);
+    area += own;
+  }
+  return {problem.spaces().components, centre / area, std::sqrt(area)};
+}
+
+/// One body of the mesh with its rigid motions, its supports and its loads.
 class RigidBody {
  public:
   RigidBody(const Discretization& problem, std::vector<int> triangles)
-      : problem_(problem),
+      : frame_(frame_of(problem, triangles)),
+        problem_(problem),
         triangles_(std::move(triangles)),
         is_own_(problem.mesh.triangles.size(), false),
-        components_(problem.spaces().components),
-        size_(std::sqrt(problem.mesh.area())) {
-    centre_.setZero();
-    for (const int t : triangles_) {
-      is_own_[t] = true;
-      centre_ += centroid(t) / static_cast<double>(triangles_.size());
-    }
+        components_(problem.spaces().components) {
+    for (const int t : triangles_) is_own_[t] = true;
   }
 
+  const RigidFrame& frame() const { return frame_; }
   bool is_own(int boundary_edge) const { return is_own_[problem_.mesh.edge_triangles[boundary_edge][0]]; }
 
   /// Names the body where there are others.
   std::string name() const {
     if (triangles_.size() == problem_.mesh.triangles.size()) return "the body";
-    return "the body around " + pair(centre_);
-  }
-
-  /// u_c at x.
-  Eigen::RowVector3d component(int c, const Point& x) const {
-    if (components_ == 1) return {1, 0, 0};
-    const Vector arm = (x - centre_) / size_;
-    return c == 0 ? Eigen::RowVector3d(1, 0, -arm.y()) : Eigen::RowVector3d(0, 1, arm.x());
-  }
-
-  /// u_n at x, with u_n = −u for the membrane.
-  Eigen::RowVector3d along(const Vector& normal, const Point& x) const {
-    if (components_ == 1) return {-1, 0, 0};
-    return normal.x() * component(0, x) + normal.y() * component(1, x);
+    return "the body around " + pair(frame_.centre());
   }
 
   Motions all() const {
@@ -58,27 +53,33 @@ class RigidBody {
 
   std::string name(const RigidMotion& motion) const {
     if (components_ == 1) return "translation";
-    const double rotation = motion[2] / size_;
+    const double rotation = motion[2] / frame_.size();
     if (std::abs(motion[2]) < 1e-6 * motion.norm()) {
       const Vector direction =
           motion.head<2>().normalized().unaryExpr([](double c) { return std::abs(c) < 1e-9 ? 0 : c; });
       return "translation along " + pair(direction);
     }
-    return "rotation about " + pair(centre_ + Vector(-motion.y(), motion.x()) / rotation);
+    return "rotation about " + pair(frame_.centre() + Vector(-motion.y(), motion.x()) / rotation);
   }
 
   /// Calls visit(normal, point) at both ends of each own edge of a part.
   template <typename Visit>
   void at_ends(const BoundaryPart& part, const Visit& visit) const {
     for (const int edge : part.edges)
-      if (is_own(edge)) at_ends(edge, problem_.mesh.outward_normal(edge), visit);
+      if (is_own(edge))
+        for (const int point : problem_.mesh.edges[edge])
+          visit(problem_.mesh.outward_normal(edge), problem_.mesh.points[point]);
   }
 
-  /// Calls visit(direction, point) at both ends of each own edge of Γ_C.
+  /// Calls visit(direction, point, gap) at both ends of each own edge of Γ_C.
   template <typename Visit>
   void at_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : problem_.clearance.edges)
-      if (is_own(contact.edge)) at_ends(contact.edge, contact.direction, visit);
+    for (const ContactEdge& contact : problem_.clearance.edges) {
+      if (!is_own(contact.edge)) continue;
+      for (int end = 0; end < 2; ++end)
+        visit(contact.direction, problem_.mesh.points[problem_.mesh.edges[contact.edge][end]],
+              contact.gap[end * problem_.spaces().order]);
+    }
   }
 
   /// The work of the loads on each of the three motions, and the sum of the sizes of its terms.
@@ -96,8 +97,8 @@ class RigidBody {
       const LocalVector load = problem_.load.col(t);
       const auto corners = mesh.corners(t);
       for (int i = 0; i < load.size(); ++i) {
-        const Point x = problem_.spaces().order == 0 ? centroid(t) : corners[i / components_];
-        work.add(load[i], component(i % components_, x));
+        const Point x = problem_.spaces().order == 0 ? mesh.centroid(t) : corners[i / components_];
+        work.add(load[i], frame_.component(i % components_, x));
       }
       add_traction(t, work);
     }
@@ -114,16 +115,6 @@ class RigidBody {
     return text.str();
   }
 
-  Point centroid(int t) const {
-    const auto corners = problem_.mesh.corners(t);
-    return (corners[0] + corners[1] + corners[2]) / 3;
-  }
-
-  template <typename Visit>
-  void at_ends(int edge, const Vector& direction, const Visit& visit) const {
-    for (const int point : problem_.mesh.edges[edge]) visit(direction, problem_.mesh.points[point]);
-  }
-
   void add_traction(int t, Work& work) const {
     const auto corners = problem_.mesh.corners(t);
     const int per_edge = problem_.spaces().traces_per_edge();
@@ -134,7 +125,7 @@ class RigidBody {
       if (force == 0) continue;
       const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
       const Point x = problem_.spaces().order == 0 ? Point((a + b) / 2) : (function == 0 ? a : b);
-      work.add(force, component(j % components_, x));
+      work.add(force, frame_.component(j % components_, x));
     }
   }
 
@@ -147,16 +138,15 @@ class RigidBody {
         if (seen[point]) continue;
         seen[point] = true;
         const double couple = -problem_.coupling_load[problem_.traces.rotation_at(point)];
-        work.add(couple / size_, Eigen::RowVector3d::UnitZ());
+        work.add(couple / frame_.size(), Eigen::RowVector3d::UnitZ());
       }
   }
 
+  RigidFrame frame_;
   const Discretization& problem_;
   std::vector<int> triangles_;
   std::vector<bool> is_own_;  ///< of each triangle of the mesh
   int components_;
-  double size_;
-  Point centre_;
 };
 
 /// Collects conditions that a motion must fulfil, functional · motion = 0, and tells which motions do.
@@ -189,11 +179,11 @@ Motions left_free(const Discretization& problem, const RigidBody& body) {
   for (const BoundaryPart& part : problem.mesh.boundary) {
     if (condition_on<Fixed>(problem.problem, part.name))
       body.at_ends(part, [&](const Vector&, const Point& x) {
-        for (int c = 0; c < problem.spaces().components; ++c) conditions.add(body.component(c, x));
+        for (int c = 0; c < problem.spaces().components; ++c) conditions.add(body.frame().component(c, x));
       });
     if (condition_on<Roller>(problem.problem, part.name))
-      body.at_ends(part,
-                   [&](const Vector& normal, const Point& x) { conditions.add(body.along(normal, x)); });
+      body.at_ends(
+          part, [&](const Vector& normal, const Point& x) { conditions.add(body.frame().along(normal, x)); });
   }
   return conditions.fulfilled_by(body.all());
 }
@@ -207,39 +197,98 @@ RigidMotion upright(const RigidMotion& motion) {
 
 void refuse_sliding(const RigidBody& body, const Motions& free) {
   Conditions conditions;
-  body.at_contact([&](const Vector& direction, const Point& x) { conditions.add(body.along(direction, x)); });
+  body.at_contact([&](const Vector& direction, const Point& x, double) {
+    conditions.add(body.frame().along(direction, x));
+  });
   const Motions sliding = conditions.fulfilled_by(free);
   if (sliding.cols() == 0) return;
-  throw SolveError("nothing holds " + body.name() + " against a " + body.name(upright(sliding.col(0))) +
-                   ": no fixed part or roller prevents it, and " +
-                   (conditions.count() > 0 ? "it slides along the contact without friction"
-                                           : "the body has no contact") +
-                   "; fix a part, or add a roller that prevents it");
+  throw SolveError(
+      "nothing holds " + body.name() + " against a " + body.name(upright(sliding.col(0))) +
+      ": no fixed part or roller prevents it, and " +
+      (conditions.count() > 0 ? "it slides along the contact without friction" : "the body has no contact") +
+      "; fix a part, or add a roller that prevents it");
 }
 
-/// At rest the pressures p ≥ 0 balance the load in every free motion z: Σ p z_n = (f, z) + <t, z>.
-void refuse_lifting(const RigidBody& body, const Motions& free) {
-  std::vector<Eigen::VectorXd> normals;
-  body.at_contact([&](const Vector& direction, const Point& x) {
-    normals.push_back((body.along(direction, x) * free).transpose());
+/// What contact and loads say of the free motions of a body, in the coordinates of these.
+struct Balance {
+  std::vector<Eigen::VectorXd> normals;  ///< r_n at the ends of the edges of Γ_C
+  std::vector<double> gaps;              ///< there
+  Eigen::VectorXd load;                  ///< (f, r) + <t, r>; 0 if it is rounding
+  bool is_loaded;
+};
+
+Balance balance_of(const RigidBody& body, const Motions& free) {
+  Balance balance;
+  body.at_contact([&](const Vector& direction, const Point& x, double gap) {
+    balance.normals.push_back((body.frame().along(direction, x) * free).transpose());
+    balance.gaps.push_back(gap);
   });
   const RigidBody::Work work = body.work();
-  const Eigen::VectorXd load = (work.sum * free).transpose();
+  balance.load = (work.sum * free).transpose();
+  balance.is_loaded = work.terms.sum() > 0;
   const double rounding = 1e-12 * work.terms.sum();
-  if (load.norm() > rounding && is_inside_cone(normals, load)) return;
-  const RigidMotion lifting = load[0] < 0 ? RigidMotion(-free.col(0)) : RigidMotion(free.col(0));
-  const std::string found =
-      load.norm() > rounding ? "it does not (it lifts it off)" : "it does no work at all";
+  if (balance.load.norm() <= rounding) balance.load.setZero();
+  return balance;
+}
+
+/// A free motion that no contact prevents, r_n ≤ 0, and against which the load does no work, L(r) ≥ 0: one
+/// that it works on if there is any; 0 if there is none at all.
+///
+/// By Fichera (1964) the energy has a minimum over the displacements with u_n ≤ g if L(r) < 0 for every rigid
+/// r ≠ 0 with r_n ≤ 0, nothing sliding, and only if L(r) ≤ 0. The polar of these r is the cone of the
+/// normals, so that L must lie in its interior: it stays in the cone when it is changed a little in any
+/// direction. Where the normals span all motions there is no such r, and the body needs no load to be held.
+Eigen::VectorXd unhindered_motion(const Balance& balance) {
+  const Eigen::VectorXd& load = balance.load;
+  if (Eigen::VectorXd lifted = beyond_cone(balance.normals, load); !lifted.isZero(0)) return lifted;
+  const double little = load.isZero(0) ? 1 : 1e-6 * load.norm();
+  for (Eigen::Index k = 0; k < load.size(); ++k)
+    for (const double change : {little, -little}) {
+      Eigen::VectorXd changed = load;
+      changed[k] += change;
+      if (Eigen::VectorXd motion = beyond_cone(balance.normals, changed); !motion.isZero(0)) return motion;
+    }
+  return Eigen::VectorXd::Zero(load.size());
+}
+
+void refuse_lifting(const RigidBody& body, const Motions& free, const Balance& balance) {
+  const Eigen::VectorXd motion = unhindered_motion(balance);
+  if (motion.isZero(0)) return;
+  const bool works = balance.load.dot(motion) > 1e-6 * balance.load.norm() * motion.norm();
   throw SolveError("nothing holds " + body.name() + " but contact, and contact cannot hold it against a " +
-                   body.name(lifting) + ": the load would have to press the body on its contact, but " +
-                   found + "; fix a part or reverse the load");
+                   body.name(free * motion) + ": the load would have to press the body on its contact, but " +
+                   (works ? "it does not (it lifts it off)" : "it does no work at all") + "; fix a part or " +
+                   (works ? "reverse the load" : "give a load that presses"));
+}
+
+/// Without a load the body moves as far as its contacts let it. It can if a motion has r_n < g everywhere; if
+/// not, by Farkas' lemma, there are pressures in balance with Σ p g ≤ 0 and Σ p = 1.
+void refuse_floating(const RigidBody& body, const Balance& balance) {
+  if (balance.is_loaded) return;
+  const Eigen::Index d = balance.load.size();
+  double largest = 0;
+  for (const double gap : balance.gaps) largest = std::max(largest, std::abs(gap));
+  if (largest == 0) return;
+  Eigen::VectorXd slack = Eigen::VectorXd::Unit(d + 2, d);
+  std::vector<Eigen::VectorXd> pressures{slack};
+  for (std::size_t i = 0; i < balance.normals.size(); ++i) {
+    pressures.emplace_back(d + 2);
+    pressures.back() << balance.normals[i], balance.gaps[i] / largest, 1;
+  }
+  if (beyond_cone(pressures, Eigen::VectorXd::Unit(d + 2, d + 1)).isZero(0)) return;
+  throw SolveError(
+      "nothing holds " + body.name() +
+      " but contact, and it floats between its contacts: without a load and with gaps all around "
+      "nothing tells where it rests; give a load, close the gaps or fix a part");
 }
 
 bool held_by_contact_alone(const Discretization& problem, const RigidBody& body) {
   const Motions free = left_free(problem, body);
   if (free.cols() == 0) return false;
   refuse_sliding(body, free);
-  refuse_lifting(body, free);
+  const Balance balance = balance_of(body, free);
+  refuse_lifting(body, free, balance);
+  refuse_floating(body, balance);
   return true;
 }
 

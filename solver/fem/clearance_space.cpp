@@ -26,11 +26,11 @@ struct HeldPoints {
  private:
   void add_fixed(const Fixed& condition, const BoundaryPart& part, const Mesh& mesh) {
     for (const int edge : part.edges)
-      for (const int point : mesh.edges[edge]) {
-        const Vector normal = mesh.outward_normal(edge);
-        Vector u(condition.value(0, mesh.points[point], normal), 0);
-        if (condition.value.size() == 2) u.y() = condition.value(1, mesh.points[point], normal);
-        fixed.try_emplace(point, u);
+      for (int end = 0; end < 2; ++end) {
+        const auto [x, normal] = mesh.on_boundary(edge, end);
+        Vector u(condition.value(0, x, normal), 0);
+        if (condition.value.size() == 2) u.y() = condition.value(1, x, normal);
+        fixed.try_emplace(mesh.edges[edge][end], u);
       }
   }
 
@@ -52,6 +52,7 @@ class Builder {
 
   void add_part(int part, const Contact& contact) {
     rows_of_node_.clear();
+    directions_at_node_.clear();
     const BoundaryPart& boundary = mesh_.boundary[part];
     const std::vector<std::array<int, 2>> ways = directed_edges(mesh_, boundary);
     for (std::size_t i = 0; i < ways.size(); ++i) add_edge(part, boundary.edges[i], ways[i], contact);
@@ -73,19 +74,32 @@ class Builder {
     return direction;
   }
 
+  /// What rounds the coordinates of short edges does not turn the direction where the part runs on straight.
+  Vector straightened(Vector direction, const std::array<int, 2>& way) {
+    for (const int node : way) {
+      const auto [begin, end] = directions_at_node_.equal_range(node);
+      for (auto known = begin; known != end; ++known)
+        if (is_same_direction(known->second, direction)) direction = known->second;
+    }
+    for (const int node : way) directions_at_node_.emplace(node, direction);
+    return direction;
+  }
+
   /// `way`: the ends of the edge in the direction in which the part runs.
   void add_edge(int part, int edge, const std::array<int, 2>& way, const Contact& condition) {
     const auto [a, b] = mesh_.edges[edge];
     const Point from = mesh_.points[a], to = mesh_.points[b];
-    const Vector normal = mesh_.outward_normal(edge);
-    const auto gap = [&](double s) { return condition.gap(from + s * (to - from), normal); };
+    const auto gap = [&](double s) {
+      const auto [x, normal] = mesh_.on_boundary(edge, s);
+      return condition.gap(x, normal);
+    };
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
-    ContactEdge contact{edge, {}, {}, direction_on(part, condition, edge)};
+    ContactEdge contact{edge, {}, {}, straightened(direction_on(part, condition, edge), way)};
     if (order_ == 0)
       contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
     else
       for (const int node : way)
-        contact.rows[node == a ? 0 : 1] = row_of_node(part, node, condition.gap, normal, contact.direction);
+        contact.rows[node == a ? 0 : 1] = row_of_node(part, node, gap(node == a ? 0 : 1), contact.direction);
     for (int j = 0; j <= order_; ++j) {
       contact.gap[j] = projection[j];
       space_.rows[contact.rows[j]].weight += mesh_.length(edge) / (order_ + 1);
@@ -100,11 +114,11 @@ class Builder {
   }
 
   /// Where the direction turns, u_n jumps though u does not, and so does the clearance.
-  int row_of_node(int part, int node, const Field& gap, const Vector& normal, const Vector& direction) {
+  int row_of_node(int part, int node, double gap, const Vector& direction) {
     const auto [begin, end] = rows_of_node_.equal_range(node);
     for (auto known = begin; known != end; ++known)
       if (components_ == 1 || is_same_direction(known->second.direction, direction)) return known->second.row;
-    const ClearanceRow row{part, mesh_.points[node], gap(mesh_.points[node], normal)};
+    const ClearanceRow row{part, mesh_.points[node], gap};
     const auto held = held_displacement(node, direction);
     const int index = held ? held_row(row, *held) : new_row(row);
     rows_of_node_.emplace(node, RowOfNode{index, direction});
@@ -145,7 +159,8 @@ class Builder {
     int row;
     Vector direction;
   };
-  std::unordered_multimap<int, RowOfNode> rows_of_node_;  ///< of the part that is being added
+  std::unordered_multimap<int, RowOfNode> rows_of_node_;     ///< of the part that is being added
+  std::unordered_multimap<int, Vector> directions_at_node_;  ///< likewise
   ClearanceSpace space_;
 };
 

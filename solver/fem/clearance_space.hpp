@@ -34,6 +34,19 @@ struct ContactEdge {
 };
 
 /// Λ_h, the space of the clearance on Γ_C (paper-notes, "The two schemes").
+///
+/// On an arc the gap is asked at the arc, not at its chord. With x(s) on the chord, X(s) the point of the arc
+/// nearest to it and n(X) the arc's normal, the condition is
+///
+///     u_n(x) ≤ g(X, n(X)),     u_n = u·d with the direction d of the condition, or the chord's normal.
+///
+/// For what touches is the arc: the body's point X, which moves by u(X) = u(x) + O(h²/R |∇u|), has the gap
+/// g(X). The chord's point x lies τ = h²/8R or less behind it, but has the material between them before it,
+/// so that τ is no part of its gap. To add it, as a gap read at the chord does, presses every node into the
+/// foundation by τ more than the middle between two of them: a pressure of E τ/h = E h/8R that goes up and
+/// down from edge to edge.
+///
+/// The chord's normal is the arc's in its middle, and their angle is h/2R at its ends (see contact_parts()).
 struct ClearanceSpace {
   std::vector<ClearanceRow> rows;  ///< part by part, in order along each part
   std::vector<ContactEdge> edges;

@@ -9,6 +9,8 @@ Discretization::Discretization(const Problem& posed, const Mesh& given)
     : problem(posed),
       mesh(given),
       element(posed),
+      body(posed, mesh),
+      traction(posed, mesh),
       load(spaces().displacements(), triangles()),
       clearance(make_clearance_space(posed, mesh)),
       traces(posed, mesh, clearance),
@@ -22,9 +24,8 @@ Discretization::Discretization(const Problem& posed, const Mesh& given)
 void Discretization::take_up_body_load() {
   if (spaces().leaves_couples()) couples.resize(triangles());
   for (int t = 0; t < triangles(); ++t) {
-    const TriangleLoad own = element.load(mesh, t);
+    const TriangleLoad own = element.load(mesh, t, body[t].balanced);
     load.col(t) = own.force;
-    load_varies = load_varies || own.varies;
     if (!spaces().leaves_couples()) continue;
     couples[t] = own.couple;
     for (const int point : mesh.triangles[t]) coupling_load[traces.rotation_at(point)] -= own.couple / 3;
@@ -32,7 +33,6 @@ void Discretization::take_up_body_load() {
 }
 
 void Discretization::take_up_traction() {
-  const TractionField traction(problem, mesh);
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (!traction.acts_on(edge)) continue;
     for (int c = 0; c < spaces().components; ++c) {

@@ -4,7 +4,9 @@
 
 #include "fem/clearance_space.hpp"
 #include "fem/element.hpp"
+#include "fem/load_projection.hpp"
 #include "fem/trace_space.hpp"
+#include "fem/traction_field.hpp"
 #include "mesh/mesh.hpp"
 
 namespace signorini {
@@ -22,9 +24,10 @@ struct Discretization {
   const Problem& problem;
   const Mesh& mesh;
   Element element;
-  Eigen::MatrixXd load;      ///< F, a column a triangle
-  bool load_varies = false;  ///< f is not the same all over some triangle
-  Eigen::VectorXd couples;   ///< of the load, for each triangle; empty unless the spaces leave them
+  LoadProjection body;      ///< f
+  TractionField traction;   ///< t
+  Eigen::MatrixXd load;     ///< F = (Πf, v_i), a column a triangle
+  Eigen::VectorXd couples;  ///< of the load, for each triangle; empty unless the spaces leave them
   ClearanceSpace clearance;
   TraceSpace traces;
   /// What acts on the coupling itself, an entry an unknown: <t, μ> on Γ_F, and against the rotation the

@@ -19,6 +19,7 @@ Element::Element(const Problem& problem)
     const double weight = triangle_rule().weights[q];
     tau_[q] = spaces_.row.reference_values(x);
     v_[q] = triangle_basis(spaces_.order, x);
+    p2_[q] = quadratic_basis(x);
     for (int k = 0; k < 2; ++k)
       for (int l = 0; l < 2; ++l) moments_[k][l] += weight * tau_[q].row(k).transpose() * tau_[q].row(l);
     const LocalVector hats = triangle_basis(1, x);
@@ -102,20 +103,17 @@ LocalMatrix Element::stress_mass(const Mesh& mesh, int triangle) const {
   return constant_form(AffineMap(mesh.corners(triangle)), Compliance::Identity(n, n));
 }
 
-TriangleLoad Element::load(const Mesh& mesh, int triangle) const {
+TriangleLoad Element::load(const Mesh& mesh, int triangle,
+                           const Eigen::Ref<const Eigen::MatrixXd>& quadratic) const {
   const AffineMap map(mesh.corners(triangle));
   const Point centroid = mesh.centroid(triangle);
   const int d = spaces_.components;
   TriangleLoad load{LocalVector::Zero(spaces_.displacements())};
-  std::array<double, 2> first{};
   for (int q = 0; q < TriangleRule::size; ++q) {
-    const Point x = map(triangle_rule().points[q]);
-    const Vector arm = turned_left(x - centroid);
+    const Vector arm = turned_left(map(triangle_rule().points[q]) - centroid);
     const double weight = triangle_rule().weights[q] * map.determinant;
     for (int c = 0; c < d; ++c) {
-      const double f = problem_.body(c, x);
-      if (q == 0) first[c] = f;
-      load.varies = load.varies || f != first[c];
+      const double f = quadratic.row(c).dot(p2_[q]);
       for (int i = 0; i < v_[q].size(); ++i) load.force[i * d + c] += weight * f * v_[q][i];
       if (d == 2) load.couple += weight * f * arm[c];
     }

@@ -19,12 +19,10 @@ struct ElementMatrices {
 /// What the body load does to one triangle.
 struct TriangleLoad {
   LocalVector force;    ///< F = (f, v_i)
-  double couple = 0;    ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
-  bool varies = false;  ///< f is not the same at all points of the rule
+  double couple = 0;  ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
 };
 
-/// Computes the matrices and loads of the triangles of a problem: C is the compliance of its material, f its
-/// body load.
+/// Computes the matrices and loads of the triangles of a problem: C is the compliance of its material.
 ///
 /// Where the material is constant the integrals over the reference triangle are taken once and each triangle
 /// combines them; elsewhere C is evaluated at the seven points of the rule.
@@ -33,7 +31,8 @@ class Element {
   explicit Element(const Problem& problem);
 
   ElementMatrices matrices(const Mesh& mesh, int triangle) const;
-  TriangleLoad load(const Mesh& mesh, int triangle) const;
+  /// Of the load that is quadratic on the triangle, a row a component: its values at the nodes of P2.
+  TriangleLoad load(const Mesh& mesh, int triangle, const Eigen::Ref<const Eigen::MatrixXd>& quadratic) const;
   LocalMatrix stress_mass(const Mesh& mesh, int triangle) const;  ///< (τ_i, τ_j)
   bool has_constant_material() const { return constant_material_; }
   /// (C σ, τ_j) for a stress in the basis of the spaces: M σ for the compliance M, but with the digits that
@@ -56,6 +55,7 @@ class Element {
   Compliance compliance_;                             ///< C, if constant
   std::array<LocalVectors, TriangleRule::size> tau_;  ///< τ̂_a of one row at the points of the rule
   std::array<LocalVector, TriangleRule::size> v_;     ///< scalar v_i at the points of the rule
+  std::array<Eigen::Matrix<double, 6, 1>, TriangleRule::size> p2_;  ///< the basis of P2 there
   RowMatrix moments_[2][2];                  ///< ∫ τ̂_k τ̂_lᵀ for the components k, l of a row
   std::array<LocalVectors, 3> hat_moments_;  ///< ∫ φ_z τ̂_a for the corners z
 };

@@ -24,6 +24,13 @@ LocalVector triangle_basis(int order, const Point& reference) {
   return values;
 }
 
+Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference) {
+  const double l1 = reference.x(), l2 = reference.y(), l0 = 1 - l1 - l2;
+  Eigen::Matrix<double, 6, 1> values;
+  values << l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1), 4 * l1 * l2, 4 * l2 * l0, 4 * l0 * l1;
+  return values;
+}
+
 LocalVector edge_moments(int order, const std::function<double(double s)>& function) {
   LocalVector moments = LocalVector::Zero(order + 1);
   for (int q = 0; q < EdgeRule::size; ++q) {

@@ -14,6 +14,9 @@ LocalVector edge_basis(int order, double s);
 /// corner and 0 at the others.
 LocalVector triangle_basis(int order, const Point& reference);
 
+/// The six functions of P2 on the reference triangle: 1 at a corner, or in the middle of edge 0, 1, 2.
+Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
+
 /// ∫ function φ_j ds over s ∈ [0, 1], for the functions of edge_basis.
 LocalVector edge_moments(int order, const std::function<double(double s)>& function);
 

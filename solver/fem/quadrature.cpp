@@ -23,24 +23,48 @@ TriangleRule radon() {
   return rule;
 }
 
-FineTriangleRule dunavant() {
-  FineTriangleRule rule{};
-  int next = 0;
-  const auto add = [&](double x, double y, double weight) {
-    rule.points[next] = {x, y};
-    rule.weights[next++] = weight / 2;
-  };
-  // Two orbits of three points (a, a), (1 − 2a, a), (a, 1 − 2a), and one of six.
-  for (const auto& [a, weight] : {std::pair{0.24928674517091042129, 0.11678627572637936603},
-                                  {0.06308901449150222834, 0.050844906370206816921}}) {
+/// Adds the orbits of a symmetric rule; its weights are given for an area of 1.
+template <int Points>
+class Orbits {
+ public:
+  RuleOnTriangle<Points> rule{};
+
+  void add(double x, double y, double weight) {
+    rule.points[next_] = {x, y};
+    rule.weights[next_++] = weight / 2;
+  }
+  /// (a, a), (1 − 2a, a), (a, 1 − 2a).
+  void add_three(double a, double weight) {
     add(a, a, weight);
     add(1 - 2 * a, a, weight);
     add(a, 1 - 2 * a, weight);
   }
-  constexpr double a = 0.053145049844816947353, b = 0.31035245103378440542, c = 1 - a - b;
-  for (const auto& [x, y] : {std::pair{a, b}, {b, a}, {b, c}, {c, b}, {c, a}, {a, c}})
-    add(x, y, 0.082851075618373575194);
-  return rule;
+  /// All that have two of a, b, 1 − a − b for coordinates.
+  void add_six(double a, double b, double weight) {
+    const double c = 1 - a - b;
+    for (const auto& [x, y] : {std::pair{a, b}, {b, a}, {b, c}, {c, b}, {c, a}, {a, c}}) add(x, y, weight);
+  }
+
+ private:
+  int next_ = 0;
+};
+
+FineTriangleRule dunavant_6() {
+  Orbits<12> orbits;
+  orbits.add_three(0.24928674517091042129, 0.11678627572637936603);
+  orbits.add_three(0.06308901449150222834, 0.050844906370206816921);
+  orbits.add_six(0.053145049844816947353, 0.31035245103378440542, 0.082851075618373575194);
+  return orbits.rule;
+}
+
+FinestTriangleRule dunavant_8() {
+  Orbits<16> orbits;
+  orbits.add(1. / 3, 1. / 3, 0.14431560767778716825);
+  orbits.add_three(0.45929258829272315603, 0.095091634267284624794);
+  orbits.add_three(0.17056930775176020663, 0.10321737053471825028);
+  orbits.add_three(0.050547228317030975458, 0.032458497623198080310);
+  orbits.add_six(0.0083947774099576053372, 0.26311282963463811342, 0.027230314174434994264);
+  return orbits.rule;
 }
 
 EdgeRule gauss() {
@@ -66,7 +90,12 @@ const TriangleRule& triangle_rule() {
 }
 
 const FineTriangleRule& fine_triangle_rule() {
-  static const FineTriangleRule rule = dunavant();
+  static const FineTriangleRule rule = dunavant_6();
+  return rule;
+}
+
+const FinestTriangleRule& finest_triangle_rule() {
+  static const FinestTriangleRule rule = dunavant_8();
   return rule;
 }
 

@@ -17,12 +17,16 @@ struct RuleOnTriangle {
 
 using TriangleRule = RuleOnTriangle<7>;
 using FineTriangleRule = RuleOnTriangle<12>;
+using FinestTriangleRule = RuleOnTriangle<16>;
 
 /// Radon's rule with seven points: exact for polynomials of degree 5 (Stroud, T2: 5-1).
 const TriangleRule& triangle_rule();
 
 /// Dunavant's rule with twelve points (1985): exact for polynomials of degree 6.
 const FineTriangleRule& fine_triangle_rule();
+
+/// Dunavant's rule with sixteen points: exact for polynomials of degree 8.
+const FinestTriangleRule& finest_triangle_rule();
 
 /// Points and weights on [0, 1]; the weights sum to 1.
 struct EdgeRule {

@@ -20,9 +20,11 @@ void fix_points(const Problem& problem, const Mesh& mesh, Eigen::MatrixXd& value
   for (const BoundaryPart& part : mesh.boundary)
     if (const auto* fixed = condition_on<Fixed>(problem, part.name))
       for (const int edge : part.edges)
-        for (const int point : mesh.edges[edge])
+        for (int end = 0; end < 2; ++end) {
+          const auto [x, normal] = mesh.on_boundary(edge, end);
           for (int c = 0; c < values.rows(); ++c)
-            values(c, point) = fixed->value(c, mesh.points[point], mesh.outward_normal(edge));
+            values(c, mesh.edges[edge][end]) = fixed->value(c, x, normal);
+        }
 }
 
 }  // namespace

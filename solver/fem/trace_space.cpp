@@ -8,9 +8,10 @@ namespace {
 /// ∫ value φ_j along an edge from its first to its second point, divided by its length.
 template <typename Value>
 LocalVector moments_of(const Value& value, const Mesh& mesh, int edge, int order) {
-  const Point a = mesh.points[mesh.edges[edge][0]], b = mesh.points[mesh.edges[edge][1]];
-  const Vector normal = mesh.outward_normal(edge);
-  return edge_moments(order, [&](double s) { return value(a + s * (b - a), normal); });
+  return edge_moments(order, [&](double s) {
+    const auto [x, normal] = mesh.on_boundary(edge, s);
+    return value(x, normal);
+  });
 }
 
 }  // namespace

@@ -3,14 +3,15 @@
 #include <algorithm>
 
 #include "mesh/parts.hpp"
+#include "mesh/upright.hpp"
 
 namespace signorini {
 namespace {
 
 using Triangle = std::array<int, 3>;
 
-/// Whether each edge is halved: those of the marked triangles, and with any edge of a triangle the one opposite
-/// its first vertex. Edges are only added, so that this ends for every mesh.
+/// Whether each edge is halved: those of the marked triangles, and with any edge of a triangle the one
+/// opposite its first vertex. Edges are only added, so that this ends for every mesh.
 std::vector<bool> halved_edges(const Mesh& mesh, const std::vector<int>& marked) {
   std::vector<bool> halved(mesh.edges.size(), false);
   std::vector<int> added;
@@ -29,16 +30,20 @@ std::vector<bool> halved_edges(const Mesh& mesh, const std::vector<int>& marked)
   return halved;
 }
 
+/// Where the middle of an arc's chord goes.
+enum class Middle { on_arc, on_chord };
+
 class Bisection {
  public:
-  Bisection(const Mesh& mesh, const std::vector<int>& marked)
+  Bisection(const Mesh& mesh, const std::vector<int>& marked, Middle of_arcs)
       : mesh_(mesh), points_(mesh.points), middle_(mesh.edges.size(), -1) {
     const std::vector<bool> halved = halved_edges(mesh, marked);
-    for (std::size_t edge = 0; edge < halved.size(); ++edge) {
+    for (int edge = 0; edge < static_cast<int>(halved.size()); ++edge) {
       if (!halved[edge]) continue;
       const auto& [a, b] = mesh.edges[edge];
       middle_[edge] = static_cast<int>(points_.size());
-      points_.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+      points_.push_back(of_arcs == Middle::on_arc ? mesh.middle(edge)
+                                                  : Point(0.5 * (mesh.points[a] + mesh.points[b])));
     }
   }
 
@@ -49,7 +54,10 @@ class Bisection {
       cut(t);
       parents_.resize(triangles_.size(), t);
     }
-    return make_mesh(std::move(points_), std::move(triangles_), names(mesh_.boundary), segments());
+    Mesh mesh = make_mesh(std::move(points_), std::move(triangles_), names(mesh_.boundary), segments(),
+                          mesh_.circles);
+    mesh.notes = mesh_.notes;
+    return mesh;
   }
 
  private:
@@ -76,12 +84,12 @@ class Bisection {
       const auto directed = directed_edges(mesh_, mesh_.boundary[part]);
       for (std::size_t i = 0; i < directed.size(); ++i) {
         const auto& [a, b] = directed[i];
-        const int m = middle_[mesh_.boundary[part].edges[i]];
+        const int edge = mesh_.boundary[part].edges[i], m = middle_[edge], circle = mesh_.circle_of(edge);
         if (m < 0) {
-          all.push_back({{a, b}, part});
+          all.push_back({{a, b}, part, circle});
         } else {
-          all.push_back({{a, m}, part});
-          all.push_back({{m, b}, part});
+          all.push_back({{a, m}, part, circle});
+          all.push_back({{m, b}, part, circle});
         }
       }
     }
@@ -111,11 +119,13 @@ Mesh with_longest_edges_first(Mesh mesh) {
 }
 
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked) {
-  return Bisection(mesh, marked).mesh();
+  Mesh finer = Bisection(mesh, marked, Middle::on_arc).mesh();
+  require_upright(finer);
+  return finer;
 }
 
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents) {
-  Bisection bisection(mesh, marked);
+  Bisection bisection(mesh, marked, Middle::on_chord);
   Mesh finer = bisection.mesh();
   parents = bisection.parents();
   return finer;

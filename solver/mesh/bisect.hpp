@@ -9,13 +9,16 @@ namespace signorini {
 /// taken, by both of its triangles.
 Mesh with_longest_edges_first(Mesh mesh);
 
-/// Newest-vertex bisection (Mitchell 1991): halves the edges of the marked triangles, and as many others as it
-/// takes to keep the mesh conforming. A triangle is halved from its first vertex, and each half has the new
-/// point for its first vertex, so that the descendants of a triangle have at most four shapes, however often
-/// they are cut. The points keep their numbers, and the parts their names and the order of their edges.
+/// Newest-vertex bisection (Mitchell 1991): halves the edges of the marked triangles, and as many others as
+/// it takes to keep the mesh conforming. A triangle is halved from its first vertex, and each half has the
+/// new point for its first vertex, so that the descendants of a triangle have at most four shapes, however
+/// often they are cut; next to an arc, whose midpoint takes the place of that of its chord, nearly so. The
+/// points keep their numbers, and the parts their names and the order of their edges. Throws as
+/// require_upright() does.
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked);
 
-/// The same; `parents` tells for each new triangle which one it is, or is part of.
+/// The same for the body that the mesh is: of an arc's chord the midpoint is taken, so that every new
+/// triangle is part of one, which `parents` tells.
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents);
 
 }  // namespace signorini

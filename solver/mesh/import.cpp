@@ -57,7 +57,9 @@ class Import {
     throw_if_any();
     faults_ = faults_of_overlap(edges, data_.points, scaled_);
     throw_if_any();
-    return make_mesh(data_.points, triangles_, names_, segments(edges));
+    Mesh mesh = make_mesh(data_.points, triangles_, names_, segments(edges));
+    mesh.notes = data_.notes;
+    return mesh;
   }
 
  private:

@@ -1,6 +1,8 @@
 #include "mesh/mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace signorini {
@@ -73,6 +75,15 @@ int find_edge(const Mesh& mesh, std::array<int, 2> ends) {
 
 }  // namespace
 
+Point Circle::nearest(const Point& x) const {
+  const Vector out = x - centre;
+  const double distance = out.norm();
+  const double rounding =
+      4 * std::numeric_limits<double>::epsilon() * (radius + centre.cwiseAbs().maxCoeff());
+  if (std::abs(distance - radius) <= rounding) return x;
+  return x + (radius / distance - 1) * out;
+}
+
 double Mesh::length(int edge) const {
   return (points[edges[edge][1]] - points[edges[edge][0]]).norm();
 }
@@ -95,6 +106,24 @@ Vector Mesh::outward_normal(int edge) const {
   return Vector(along.y(), -along.x()).normalized();
 }
 
+Point Mesh::middle(int edge) const {
+  const auto& [a, b] = edges[edge];
+  const Point middle = 0.5 * (points[a] + points[b]);
+  const int circle = circle_of(edge);
+  return circle < 0 ? middle : circles[circle].nearest(middle);
+}
+
+Mesh::BoundaryPoint Mesh::on_boundary(int edge, double s) const {
+  const auto& [a, b] = edges[edge];
+  const Point x = s == 1 ? points[b] : Point(points[a] + s * (points[b] - points[a]));
+  const Vector normal = outward_normal(edge);
+  const int circle = circle_of(edge);
+  if (circle < 0) return {x, normal};
+  const Vector from_centre = (x - circles[circle].centre).normalized();
+  const Vector of_arc = from_centre.dot(normal) > 0 ? from_centre : Vector(-from_centre);
+  return {circles[circle].nearest(x), of_arc};
+}
+
 Point Mesh::centroid(int triangle) const {
   const auto& [a, b, c] = triangles[triangle];
   return (points[a] + points[b] + points[c]) / 3;
@@ -113,20 +142,26 @@ double Mesh::area() const {
 std::size_t Mesh::bytes() const {
   const auto bytes_of = [](const auto& elements) { return elements.capacity() * sizeof(elements[0]); };
   std::size_t bytes = bytes_of(points) + bytes_of(triangles) + bytes_of(edges) + bytes_of(triangle_edges) +
-                      bytes_of(edge_triangles);
+                      bytes_of(edge_triangles) + bytes_of(circles) + bytes_of(edge_circles);
   for (const BoundaryPart& part : boundary) bytes += bytes_of(part.edges);
   return bytes;
 }
 
 Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triangles,
-               const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments) {
+               const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments,
+               std::vector<Circle> circles) {
   Mesh mesh;
   mesh.points = std::move(points);
   mesh.triangles = std::move(triangles);
   number_edges(mesh, HalfEdges(mesh));
   for (const std::string& name : part_names) mesh.boundary.push_back({name, {}});
-  for (const BoundarySegment& segment : segments)
-    mesh.boundary[segment.part].edges.push_back(find_edge(mesh, segment.points));
+  mesh.circles = std::move(circles);
+  if (!mesh.circles.empty()) mesh.edge_circles.assign(mesh.edges.size(), -1);
+  for (const BoundarySegment& segment : segments) {
+    const int edge = find_edge(mesh, segment.points);
+    mesh.boundary[segment.part].edges.push_back(edge);
+    if (segment.circle >= 0) mesh.edge_circles[edge] = segment.circle;
+  }
   return mesh;
 }
 

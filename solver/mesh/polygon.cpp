@@ -51,8 +51,10 @@ class SizeField {
     std::ranges::stable_sort(locals_, {}, &LocalSize::size);
   }
 
-  /// The bound for a triangle whose longest edge is given; any bound above that is as good as the smallest.
-  double bound(const std::array<Point, 3>& corners, double longest) const {
+  /// The bound for a triangle, or a segment, whose longest edge is given; any bound above that is as good as
+  /// the smallest.
+  template <typename Shape>
+  double bound(const Shape& corners, double longest) const {
     for (const LocalSize& local : locals_) {
       if (local.size >= longest) break;
       if (distance(local.at, corners) <= local.radius) return local.size;
@@ -159,6 +161,26 @@ void mark_domain(Triangulation& triangulation, const std::vector<Vertex>& vertic
                                            "ask for; give larger sizes, or widen the narrow places"}});
 }
 
+/// Halves the chords that are longer than their places allow.
+Rings halved_to_size(Rings rings, const SizeField& sizes, const UnitFrame& frame, int max_triangles) {
+  if (rings.circles.empty()) return rings;
+  for (bool is_done = false; !is_done;) {
+    const Rings unit = rings.within(frame);
+    std::vector<std::vector<Point>> middles(rings.points.size());
+    is_done = true;
+    for (int e = 0; e < static_cast<int>(rings.points.size()); ++e) {
+      const Segment chord{unit.points[e], unit.points[unit.next(e)]};
+      const double length = (chord[1] - chord[0]).norm();
+      if (rings.circle[e] < 0 || length <= sizes.bound(chord, length)) continue;
+      middles[e] = {rings.middle(e)};
+      is_done = false;
+    }
+    rings = rings.with(middles);
+    if (rings.points.size() > static_cast<std::size_t>(max_triangles)) refuse_size(max_triangles);
+  }
+  return rings;
+}
+
 void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles) {
   Mesher mesher(triangulation, Criteria(sizes));
   mesher.init(true);
@@ -177,6 +199,9 @@ std::string side_name(const Polygon& polygon, std::size_t edge) {
 }
 
 /// Reads the mesh out of the triangulation of the domain's rings.
+///
+/// The triangulation cuts edges of the rings at points of its own. Those of a chord go to its arc, unless
+/// that would take half its area from a triangle: then the rings must have them first.
 class Extraction {
  public:
   Extraction(const Polygon& polygon, const Rings& rings, const UnitFrame& frame,
@@ -185,16 +210,29 @@ class Extraction {
     points_ = rings.points;
     for (const Face face : triangulation.finite_face_handles())
       if (face->is_in_domain()) take(face);
+    on_edges_.resize(rings_.points.size());
+    const std::vector<Point> as_cut = points_;
     follow_rings();
+    keeps_areas_ = rings.circles.empty() || std::ranges::all_of(triangles_, [&](const auto& triangle) {
+                     const auto& [a, b, c] = triangle;
+                     return twice_area(points_[a], points_[b], points_[c]) >
+                            0.5 * twice_area(as_cut[a], as_cut[b], as_cut[c]);
+                   });
   }
+
+  /// No triangle has lost much of its area.
+  bool keeps_areas() const { return keeps_areas_; }
+
+  /// The rings with the points that their chords were cut at.
+  Rings rings_as_cut() const { return rings_.with(on_edges_); }
 
   Mesh mesh() && {
     const std::vector<std::string> names = part_names(polygon_);
     const auto edges = edges_of_parts(names);
     std::vector<BoundarySegment> segments;
     for (int part = 0; part < static_cast<int>(names.size()); ++part)
-      for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part});
-    return make_mesh(std::move(points_), std::move(triangles_), names, segments);
+      for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part, circles_.at(edge[0])});
+    return make_mesh(std::move(points_), std::move(triangles_), names, segments, rings_.circles);
   }
 
  private:
@@ -222,6 +260,7 @@ class Extraction {
   /// Sorts the edges of the boundary by the edge of the polygon on which they lie.
   void follow_rings() {
     pieces_.resize(rings_.points.size());
+    circles_.resize(points_.size(), -1);
     for (int ring = 0; ring < rings_.size(); ++ring) {
       int corner = rings_.begin[ring];
       do corner = follow_edge(corner);
@@ -235,9 +274,19 @@ class Extraction {
     do along.push_back(next_[along.back()]);
     while (!is_given(along.back()));
     const int end = along.back();
-    for (std::size_t i = 1; i + 1 < along.size(); ++i) put_on_edge(along[i], corner, end);
-    auto& pieces = pieces_[rings_.next(corner) == end ? corner : end];
-    for (std::size_t i = 1; i < along.size(); ++i) pieces.push_back({along[i - 1], along[i]});
+    const bool is_forward = rings_.next(corner) == end;
+    const int edge = is_forward ? corner : end, circle = rings_.circle[edge];
+    for (std::size_t i = 1; i + 1 < along.size(); ++i) {
+      put_on_edge(along[i], corner, end);
+      if (circle < 0) continue;
+      points_[along[i]] = rings_.circles[circle].nearest(points_[along[i]]);
+      on_edges_[edge].push_back(points_[along[i]]);
+    }
+    if (!is_forward) std::ranges::reverse(on_edges_[edge]);
+    for (std::size_t i = 1; i < along.size(); ++i) {
+      pieces_[edge].push_back({along[i - 1], along[i]});
+      circles_[along[i - 1]] = circle;
+    }
     return end;
   }
 
@@ -259,7 +308,7 @@ class Extraction {
   }
 
   std::string part_of(int edge) const {
-    return rings_.ring[edge] > 0 ? hole_name(rings_.ring[edge] - 1) : side_name(polygon_, edge);
+    return rings_.ring[edge] > 0 ? hole_name(rings_.ring[edge] - 1) : side_name(polygon_, rings_.side[edge]);
   }
 
   const Polygon& polygon_;
@@ -268,7 +317,10 @@ class Extraction {
   std::vector<Point> points_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> next_;                                // along the boundary, of each point on it
-  std::vector<std::vector<std::array<int, 2>>> pieces_;  // of each edge of the polygon
+  std::vector<std::vector<std::array<int, 2>>> pieces_;  // of each edge of the rings
+  std::vector<std::vector<Point>> on_edges_;             // where each chord of the rings was cut
+  std::vector<int> circles_;  // of the edge of the boundary that begins in each point
+  bool keeps_areas_ = true;
 };
 
 void throw_if_any(std::vector<Fault> faults) {
@@ -296,14 +348,26 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
                   int max_triangles) {
   throw_if_any(validate(polygon));
   throw_if_any(validate(polygon, size, sizes, max_triangles));
-  const Rings rings(polygon);
+  Rings rings = resolved_rings(polygon, size);
   const UnitFrame frame(rings.points);
-  const Rings unit = rings.within(frame);
+  const SizeField field(size, sizes, frame);
+  rings = halved_to_size(std::move(rings), field, frame, max_triangles);
+  if (!rings.circles.empty()) throw_if_any(faults_of_shape(rings));
 
-  Triangulation triangulation;
-  mark_domain(triangulation, insert_rings(triangulation, unit), unit);
-  refine(triangulation, SizeField(size, sizes, frame), max_triangles);
-  return Extraction(polygon, rings, frame, triangulation).mesh();
+  constexpr int most_rounds = 20;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Rings unit = rings.within(frame);
+    Triangulation triangulation;
+    mark_domain(triangulation, insert_rings(triangulation, unit), unit);
+    refine(triangulation, field, max_triangles);
+    Extraction extraction(polygon, rings, frame, triangulation);
+    if (extraction.keeps_areas()) return std::move(extraction).mesh();
+    rings = extraction.rings_as_cut();
+  }
+  throw InvalidProblem(
+      std::vector<Fault>{{"/mesh/size",
+                          "no mesh of this size follows the arcs of the domain in its narrow "
+                          "places; give a smaller size"}});
 }
 
 }  // namespace signorini

@@ -6,6 +6,7 @@
 namespace signorini {
 
 /// Every fault of the polygon, with its pointer: `/domain/vertices/3`, `/domain/holes/0/2`, `/domain/sides`.
+/// Edges cross where the chords do that stand for arcs.
 /// Points, and points and edges, closer than 1e-9 of the domain's extent count as touching.
 std::vector<Fault> validate(const Polygon& polygon);
 
@@ -17,16 +18,18 @@ std::vector<Fault> validate(const Polygon& polygon, double size, const std::vect
 /// The names of the parts in the order in which the mesh has them.
 std::vector<std::string> part_names(const Polygon& polygon);
 
-/// The area of the polygon without its holes.
+/// The area of the polygon without its holes, with few chords for its arcs.
 double area(const Polygon& polygon);
 
 /// A Delaunay mesh whose edges are no longer than `size` (but for rounding) nor than the local sizes, and
-/// whose angles are above 20.7° but where the polygon's own angles are smaller.
+/// whose angles are above 20.7° but where the polygon's own angles are smaller. An arc is made of chords that
+/// span at most an eighth of the straight angle and are as short as the sizes ask; all points on it lie on
+/// its circle, for which edges and angles may miss their bounds by a little.
 ///
-/// The vertices of the polygon are the first points of the mesh, bit for bit: the outer ring, then the holes.
-/// The edges of a part run with the domain on their left. Equal input gives equal meshes. Throws
-/// InvalidProblem for the faults that validate names, and at `/mesh/size` if the mesh would have more
-/// triangles than allowed.
+/// The vertices of the polygon, and between those of an arc the ends of its first chords, are the first
+/// points of the mesh, bit for bit: the outer ring, then the holes. The edges of a part run with the domain
+/// on their left. Equal input gives equal meshes. Throws InvalidProblem for the faults that validate names,
+/// and at `/mesh/size` if the mesh would have more triangles than allowed.
 Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes = {},
                   int max_triangles = 20'000'000);
 

@@ -3,8 +3,10 @@
 #include <numbers>
 #include <set>
 
+#include "mesh/arc.hpp"
 #include "mesh/fault_list.hpp"
 #include "mesh/meeting_boxes.hpp"
+#include "mesh/narrow_places.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/rings.hpp"
 
@@ -13,25 +15,55 @@ namespace {
 
 constexpr int most_vertices = 50'000;
 
-/// In the unit frame, whose rounding of 1e-12 cannot turn apart what is farther apart than this.
-constexpr double touching = 1e-9;
-
 /// In the unit frame: below this the points of a triangle would not be told apart well.
 constexpr double least_size = 1e-8;
 
-std::vector<Fault> faults_of_vertices(const Rings& rings) {
+/// The rings as they are given.
+std::vector<const std::vector<Point>*> given_rings(const Polygon& polygon) {
+  std::vector<const std::vector<Point>*> rings{&polygon.vertices};
+  for (const auto& hole : polygon.holes) rings.push_back(&hole);
+  return rings;
+}
+
+std::string pointer_to_ring(std::size_t ring) {
+  return ring == 0 ? "/domain/vertices" : "/domain/holes/" + std::to_string(ring - 1);
+}
+
+std::vector<Fault> faults_of_vertices(const Polygon& polygon) {
+  const auto rings = given_rings(polygon);
   std::vector<Fault> faults;
-  if (rings.points.size() > most_vertices)
+  std::size_t vertices = 0;
+  for (const auto* ring : rings) vertices += ring->size();
+  if (vertices > most_vertices)
     return {{"/domain/vertices", "a polygon may have at most " + std::to_string(most_vertices) +
                                      " vertices with those of its holes; send a mesh instead"}};
-  for (int ring = 0; ring < rings.size(); ++ring)
-    if (rings.begin[ring + 1] - rings.begin[ring] < 3)
-      faults.push_back({rings.pointer_to_ring(ring), "must have at least three vertices"});
   FaultList infinite("/domain", "more points that are not finite");
-  for (int p = 0; p < static_cast<int>(rings.points.size()); ++p)
-    if (!rings.points[p].allFinite()) infinite.add(rings.pointer_to(p), "must be finite");
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const bool has_arc =
+        std::ranges::any_of(polygon.arcs, [&](const Arc& arc) { return arc.ring == static_cast<int>(r); });
+    if (rings[r]->size() < 3 && (rings[r]->empty() || !has_arc))
+      faults.push_back({pointer_to_ring(r), "must have at least three vertices, or an arc"});
+    for (std::size_t p = 0; p < rings[r]->size(); ++p)
+      if (!(*rings[r])[p].allFinite())
+        infinite.add(pointer_to_ring(r) + '/' + std::to_string(p), "must be finite");
+  }
   std::move(infinite).append_to(faults);
   return faults;
+}
+
+/// Of points that have no fault.
+std::vector<Fault> faults_of_arcs(const Polygon& polygon) {
+  const auto rings = given_rings(polygon);
+  FaultList faults("/domain", "more arcs that fit no circle");
+  for (const Arc& arc : polygon.arcs) {
+    const std::vector<Point>& ring = *rings.at(arc.ring);
+    const Point &from = ring.at(arc.vertex), &to = ring[(arc.vertex + 1) % ring.size()];
+    if (const std::string reason = why_no_arc(from, to, arc.centre); !reason.empty())
+      faults.add(pointer_to_ring(arc.ring) + '/' + std::to_string(arc.vertex) + "/arc/centre", reason);
+  }
+  std::vector<Fault> all;
+  std::move(faults).append_to(all);
+  return all;
 }
 
 std::vector<Fault> faults_of_sides(const Polygon& polygon) {
@@ -61,6 +93,13 @@ std::vector<Fault> repeated_points(const Rings& given, const Rings& unit) {
   for_each_meeting_pair(boxes, [&](int i, int j) {
     if ((unit.points[i] - unit.points[j]).norm() > touching) return true;
     const auto [first, second] = std::minmax(i, j);
+    if (unit.side[first] == unit.side[second]) {
+      repeated.add(unit.pointer_to(first),
+                   given.in_words(first) +
+                       " is so small beside the domain that its points cannot be told "
+                       "apart: leave it out, or give it a larger radius");
+      return false;
+    }
     const bool closes = unit.next(second) == first;
     repeated.add(unit.pointer_to(second),
                  "repeats " + unit.pointer_to(first) + " at " + to_string(given.points[first]) +
@@ -76,31 +115,15 @@ Segment edge_of(const Rings& rings, int edge) {
   return {rings.points[edge], rings.points[rings.next(edge)]};
 }
 
-/// Whether two edges have more in common than an end.
-bool collide(const Rings& unit, int i, int j) {
-  const Segment a = edge_of(unit, i), b = edge_of(unit, j);
-  const auto near = [](const Point& x, const Segment& edge) { return distance(x, edge) <= touching; };
-  if (unit.next(i) == j) return near(a[0], b) || near(b[1], a);
-  if (unit.next(j) == i) return near(b[0], a) || near(a[1], b);
-  return near(a[0], b) || near(a[1], b) || near(b[0], a) || near(b[1], a) || cross(a, b);
-}
-
 std::vector<Fault> crossing_edges(const Rings& given, const Rings& unit) {
   FaultList crossings("/domain", "more edges that cross or touch");
-  std::vector<Box> boxes;
-  for (int e = 0; e < static_cast<int>(unit.points.size()); ++e)
-    boxes.push_back(box_around(edge_of(unit, e), touching));
-  const auto ends = [&](int e) {
-    const Segment edge = edge_of(given, e);
-    return "from " + to_string(edge[0]) + " to " + to_string(edge[1]);
-  };
-  for_each_meeting_pair(boxes, [&](int i, int j) {
-    if (!collide(unit, i, j)) return true;
-    const auto [first, second] = std::minmax(i, j);
-    crossings.add(unit.pointer_to(first), "the edge " + ends(first) + " crosses or touches the edge " +
-                                              ends(second) + " that begins at " + unit.pointer_to(second));
-    return !crossings.is_full();
-  });
+  constexpr std::size_t most = 10;
+  std::set<std::array<int, 2>> known;
+  for (const auto& [first, second] : colliding_edges(unit, most))
+    if (known.insert({unit.side[first], unit.side[second]}).second)
+      crossings.add(unit.pointer_to(first), given.in_words(first) + " crosses or touches " +
+                                                given.in_words(second) + " that begins at " +
+                                                unit.pointer_to(second));
   std::vector<Fault> faults;
   std::move(crossings).append_to(faults);
   return faults;
@@ -131,6 +154,31 @@ std::vector<Fault> misplaced_holes(const Rings& unit) {
   return faults;
 }
 
+std::vector<Fault> faults_of_size(const std::string& where, double size, double extent) {
+  if (!(size > 0) || !std::isfinite(size)) return {{where, "must be a positive length"}};
+  if (size < least_size * extent) return {{where, "must be at least 1e-8 of the extent of the domain"}};
+  return {};
+}
+
+/// Narrow places may not ask for more triangles than this, which take some seconds to make.
+constexpr double most_in_narrow_places = 300'000;
+
+std::vector<Fault> narrow_faults(const Rings& given, const Rings& unit) {
+  const NarrowPlaces narrow = narrow_places(unit, most_in_narrow_places);
+  if (narrow.triangles < most_in_narrow_places) return {};
+  const auto ends = [&](int e) {
+    return to_string(given.points[e]) + " to " + to_string(given.points[given.next(e)]);
+  };
+  return {{unit.pointer_to(narrow.edge),
+           "the domain is so narrow that its mesh would have more than 300,000 triangles whatever its "
+           "size, most of them between the edge from " +
+               ends(narrow.edge) + " and the edge from " + ends(narrow.opposite) + " that begins at " +
+               unit.pointer_to(narrow.opposite) +
+               ": move these apart, or join them and leave the narrow place out of the domain"}};
+}
+
+}  // namespace
+
 std::vector<Fault> faults_of_shape(const Rings& given) {
   if (const std::string reason = why_no_frame(given.points); !reason.empty())
     return {{"/domain/vertices", reason}};
@@ -139,21 +187,14 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
   std::vector<Fault> faults = repeated_points(given, unit);
   if (faults.empty()) faults = crossing_edges(given, unit);
   if (faults.empty()) faults = misplaced_holes(unit);
+  if (faults.empty()) faults = narrow_faults(given, unit);
   return faults;
 }
 
-std::vector<Fault> faults_of_size(const std::string& where, double size, double extent) {
-  if (!(size > 0) || !std::isfinite(size)) return {{where, "must be a positive length"}};
-  if (size < least_size * extent) return {{where, "must be at least 1e-8 of the extent of the domain"}};
-  return {};
-}
-
-}  // namespace
-
 std::vector<Fault> validate(const Polygon& polygon) {
-  const Rings rings(polygon);
-  std::vector<Fault> faults = faults_of_vertices(rings);
-  if (faults.empty()) faults = faults_of_shape(rings);
+  std::vector<Fault> faults = faults_of_vertices(polygon);
+  if (faults.empty()) faults = faults_of_arcs(polygon);
+  if (faults.empty()) faults = faults_of_shape(resolved_rings(polygon));
   const std::vector<Fault> of_sides = faults_of_sides(polygon);
   faults.insert(faults.end(), of_sides.begin(), of_sides.end());
   return faults;
@@ -166,7 +207,11 @@ std::vector<Fault> validate(const Polygon& polygon, double size, const std::vect
   std::vector<Fault> faults = faults_of_size("/mesh/size", size, extent);
   // No triangle with edges up to h has a larger area than the equilateral one.
   const double equilateral = std::numbers::sqrt3 / 4 * size * size;
-  if (faults.empty() && domain_area(rings) > max_triangles * equilateral)
+  double perimeter = 0;
+  for (int e = 0; e < static_cast<int>(rings.points.size()); ++e)
+    perimeter += (rings.points[rings.next(e)] - rings.points[e]).norm();
+  if (faults.empty() &&
+      (domain_area(rings) > max_triangles * equilateral || perimeter > max_triangles * size))
     faults.push_back({"/mesh/size", "asks for more than " + std::to_string(max_triangles) +
                                         " triangles; give a larger size"});
   for (std::size_t i = 0; i < sizes.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "mesh/refine.hpp"
 
 #include "mesh/parts.hpp"
+#include "mesh/upright.hpp"
 
 namespace signorini {
 namespace {
@@ -8,7 +9,7 @@ namespace {
 Mesh refine_once(const Mesh& mesh) {
   const auto number = static_cast<int>(mesh.points.size());
   std::vector<Point> points = mesh.points;
-  for (const auto& [a, b] : mesh.edges) points.push_back(0.5 * (mesh.points[a] + mesh.points[b]));
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) points.push_back(mesh.middle(edge));
 
   std::vector<std::array<int, 3>> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -22,12 +23,15 @@ Mesh refine_once(const Mesh& mesh) {
   for (int part = 0; part < static_cast<int>(mesh.boundary.size()); ++part) {
     const auto directed = directed_edges(mesh, mesh.boundary[part]);
     for (std::size_t i = 0; i < directed.size(); ++i) {
-      const int middle = number + mesh.boundary[part].edges[i];
-      segments.push_back({{directed[i][0], middle}, part});
-      segments.push_back({{middle, directed[i][1]}, part});
+      const int edge = mesh.boundary[part].edges[i], middle = number + edge;
+      segments.push_back({{directed[i][0], middle}, part, mesh.circle_of(edge)});
+      segments.push_back({{middle, directed[i][1]}, part, mesh.circle_of(edge)});
     }
   }
-  return make_mesh(std::move(points), std::move(triangles), names(mesh.boundary), segments);
+  Mesh refined =
+      make_mesh(std::move(points), std::move(triangles), names(mesh.boundary), segments, mesh.circles);
+  require_upright(refined);
+  return refined;
 }
 
 }  // namespace
@@ -43,6 +47,7 @@ Mesh refine(const Mesh& mesh, int times, int max_triangles) {
   }
   Mesh refined = mesh;
   for (int i = 0; i < times; ++i) refined = refine_once(refined);
+  refined.notes = mesh.notes;
   return refined;
 }
 

@@ -1,12 +1,31 @@
 #include "mesh/rings.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "mesh/arc.hpp"
+#include "mesh/meeting_boxes.hpp"
 #include "mesh/segments.hpp"
 
 namespace signorini {
+namespace {
 
-Rings::Rings(const Polygon& polygon) : begin{0} {
+Segment edge_of(const Rings& rings, int edge) {
+  return {rings.points[edge], rings.points[rings.next(edge)]};
+}
+
+/// Whether two edges have more in common than an end.
+bool collide(const Rings& unit, int i, int j) {
+  const Segment a = edge_of(unit, i), b = edge_of(unit, j);
+  const auto near = [](const Point& x, const Segment& edge) { return distance(x, edge) <= touching; };
+  if (unit.next(i) == j) return near(a[0], b) || near(b[1], a);
+  if (unit.next(j) == i) return near(b[0], a) || near(a[1], b);
+  return near(a[0], b) || near(a[1], b) || near(b[0], a) || near(b[1], a) || cross(a, b);
+}
+
+}  // namespace
+
+Rings::Rings(const Polygon& polygon, double longest_chord) : begin{0}, first_vertex_{0} {
   const auto append = [&](const std::vector<Point>& vertices) {
     points.insert(points.end(), vertices.begin(), vertices.end());
     ring.resize(points.size(), size());
@@ -14,6 +33,23 @@ Rings::Rings(const Polygon& polygon) : begin{0} {
   };
   append(polygon.vertices);
   for (const auto& hole : polygon.holes) append(hole);
+  side.resize(points.size());
+  for (std::size_t i = 0; i < side.size(); ++i) side[i] = static_cast<int>(i);
+  circle.resize(points.size(), -1);
+  vertices_ = points;
+  first_vertex_ = begin;
+  if (polygon.arcs.empty()) return;
+  std::vector<std::vector<Point>> on_edges(points.size());
+  for (const Arc& given : polygon.arcs) {
+    const int from = begin[given.ring] + given.vertex;
+    const CircularArc arc(points[from], points[next(from)], given.centre, given.is_long);
+    const int parts = arc.parts(longest_chord);
+    on_edges[from].clear();
+    for (int k = 1; k < parts; ++k) on_edges[from].push_back(arc.at(1. * k / parts));
+    circle[from] = static_cast<int>(circles.size());
+    circles.push_back(arc.circle());
+  }
+  *this = with(on_edges);
 }
 
 std::string Rings::pointer_to_ring(int number) const {
@@ -21,13 +57,50 @@ std::string Rings::pointer_to_ring(int number) const {
 }
 
 std::string Rings::pointer_to(int point) const {
-  return pointer_to_ring(ring[point]) + '/' + std::to_string(point - begin[ring[point]]);
+  const std::string of_ring = pointer_to_ring(ring[point]);
+  const int first = first_vertex_[ring[point]], vertices = first_vertex_[ring[point] + 1] - first;
+  // What has one vertex only may have been given as a circle.
+  return vertices == 1 ? of_ring : of_ring + '/' + std::to_string(side[point] - first);
+}
+
+std::string Rings::in_words(int edge) const {
+  const int from = side[edge], last = first_vertex_[ring[edge] + 1] - 1;
+  const int to = from < last ? from + 1 : first_vertex_[ring[edge]];
+  if (from == to) return "the circle about " + to_string(circles[circle[edge]].centre);
+  return (circle[edge] < 0 ? "the edge from " : "the arc from ") + to_string(vertices_[from]) + " to " +
+         to_string(vertices_[to]);
 }
 
 Rings Rings::within(const UnitFrame& frame) const {
   Rings rings = *this;
   for (Point& x : rings.points) x = frame.into(x);
+  for (Circle& own : rings.circles) own = {frame.scaled(own.centre), own.radius / frame.extent()};
   return rings;
+}
+
+Rings Rings::with(const std::vector<std::vector<Point>>& on_edges) const {
+  Rings rings = *this;
+  rings.points.clear();
+  rings.ring.clear();
+  rings.begin = {0};
+  rings.side.clear();
+  rings.circle.clear();
+  for (int number = 0; number < size(); ++number) {
+    for (int p = begin[number]; p < begin[number + 1]; ++p) {
+      rings.points.push_back(points[p]);
+      rings.points.insert(rings.points.end(), on_edges[p].begin(), on_edges[p].end());
+      rings.ring.resize(rings.points.size(), number);
+      rings.side.resize(rings.points.size(), side[p]);
+      rings.circle.resize(rings.points.size(), circle[p]);
+    }
+    rings.begin.push_back(static_cast<int>(rings.points.size()));
+  }
+  return rings;
+}
+
+Point Rings::middle(int edge) const {
+  const Point middle = 0.5 * (points[edge] + points[next(edge)]);
+  return circle[edge] < 0 ? middle : circles[circle[edge]].nearest(middle);
 }
 
 double Rings::signed_area(int number) const {
@@ -43,6 +116,37 @@ double domain_area(const Rings& rings) {
   double area = std::abs(rings.signed_area(0));
   for (int hole = 1; hole < rings.size(); ++hole) area -= std::abs(rings.signed_area(hole));
   return area;
+}
+
+std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
+  std::vector<Box> boxes;
+  for (int e = 0; e < static_cast<int>(unit.points.size()); ++e)
+    boxes.push_back(box_around(edge_of(unit, e), touching));
+  std::vector<std::array<int, 2>> pairs;
+  for_each_meeting_pair(boxes, [&](int i, int j) {
+    if (collide(unit, i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});
+    return pairs.size() < most;
+  });
+  return pairs;
+}
+
+Rings resolved_rings(const Polygon& polygon, double longest_chord) {
+  Rings rings(polygon, longest_chord);
+  // Each round brings a chord four times closer to its arc.
+  constexpr int most_rounds = 8;
+  for (int round = 0; round < most_rounds && !rings.circles.empty(); ++round) {
+    std::vector<std::vector<Point>> middles(rings.points.size());
+    bool is_resolved = true;
+    for (const auto& pair : colliding_edges(rings.within(UnitFrame(rings.points)), rings.points.size()))
+      for (const int edge : pair) {
+        if (rings.circle[edge] < 0) continue;
+        middles[edge] = {rings.middle(edge)};
+        is_resolved = false;
+      }
+    if (is_resolved) break;
+    rings = rings.with(middles);
+  }
+  return rings;
 }
 
 }  // namespace signorini

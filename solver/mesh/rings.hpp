@@ -1,34 +1,69 @@
 #pragma once
 
+#include <limits>
+
 #include "mesh/polygon.hpp"
 #include "mesh/unit_frame.hpp"
 
 namespace signorini {
 
-/// The rings of a polygon with their points in one numbering, the outer ring first. The edge from a point to
-/// the next one of its ring has the number of the point.
+/// The rings of a polygon with their points in one numbering, the outer ring first: its vertices, and between
+/// the ends of an arc the ends of the chords that stand for it. The edge from a point to the next one of its
+/// ring has the number of the point.
 struct Rings {
-  explicit Rings(const Polygon& polygon);
+  /// With chords that are no longer than this. The polygon's arcs have no fault.
+  explicit Rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity());
 
   std::vector<Point> points;
   std::vector<int> ring;   ///< of each point; 0 is the outer one
   std::vector<int> begin;  ///< the first point of each ring, and the number of points
+  std::vector<int>
+      side;  ///< of each edge: on which one of the polygon's edges it lies, all rings in one numbering
+  std::vector<int> circle;  ///< of each edge: that of its arc, -1 if it is straight
+  std::vector<Circle> circles;
 
   int size() const { return static_cast<int>(begin.size()) - 1; }
   int next(int point) const { return point + 1 < begin[ring[point] + 1] ? point + 1 : begin[ring[point]]; }
 
-  /// The JSON pointer of a ring, and of a point in it.
+  /// The JSON pointer of a ring, and of the vertex at which the side of an edge begins.
   std::string pointer_to_ring(int number) const;
   std::string pointer_to(int point) const;
+
+  /// `the edge` or `the arc`, and from where to where the polygon has it.
+  std::string in_words(int edge) const;
 
   /// The same rings in the coordinates of the frame.
   Rings within(const UnitFrame& frame) const;
 
+  /// The same rings with more points on each edge, in its direction.
+  Rings with(const std::vector<std::vector<Point>>& on_edges) const;
+
+  /// The middle of an edge; of an arc if the edge is its chord.
+  Point middle(int edge) const;
+
   /// The area inside a ring; negative if the ring runs clockwise.
   double signed_area(int number) const;
+
+ private:
+  std::vector<Point> vertices_;
+  std::vector<int> first_vertex_;  ///< of each ring, and the number of vertices
 };
 
 /// The area of the domain: that inside the outer ring less that of the holes, whichever way they run.
 double domain_area(const Rings& rings);
+
+/// The rings of a polygon with so many chords that no two edges of which one is a chord cross, if the arcs
+/// themselves do not.
+Rings resolved_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity());
+
+/// Edges of the rings, given in their frame, that have more in common than an end.
+std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most);
+
+/// Every fault of the rings as edges between points: repeated points, edges that cross, holes that lie
+/// outside.
+std::vector<Fault> faults_of_shape(const Rings& rings);
+
+/// In the unit frame, whose rounding of 1e-12 cannot turn apart what is farther apart than this.
+constexpr double touching = 1e-9;
 
 }  // namespace signorini

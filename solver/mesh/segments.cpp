@@ -9,12 +9,16 @@ double twice_area(const Point& a, const Point& b, const Point& c) {
   return ab.x() * ac.y() - ab.y() * ac.x();
 }
 
-double distance(const Point& x, const Segment& segment) {
+Point nearest_point(const Point& x, const Segment& segment) {
   const Vector along = segment[1] - segment[0];
   const double length_squared = along.squaredNorm();
-  if (length_squared == 0) return (x - segment[0]).norm();
+  if (length_squared == 0) return segment[0];
   const double at = std::clamp((x - segment[0]).dot(along) / length_squared, 0.0, 1.0);
-  return (x - segment[0] - at * along).norm();
+  return segment[0] + at * along;
+}
+
+double distance(const Point& x, const Segment& segment) {
+  return (x - nearest_point(x, segment)).norm();
 }
 
 double distance(const Point& x, const std::array<Point, 3>& triangle) {

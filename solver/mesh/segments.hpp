@@ -12,6 +12,8 @@ using Segment = std::array<Point, 2>;
 /// Twice the signed area of the triangle a, b, c: positive if it runs counter-clockwise.
 double twice_area(const Point& a, const Point& b, const Point& c);
 
+Point nearest_point(const Point& x, const Segment& segment);
+
 /// The distance of a point from the nearest point of a segment.
 double distance(const Point& x, const Segment& segment);
 

@@ -30,7 +30,7 @@ Submesh::Submesh(const Mesh& whole, const std::vector<int>& triangles) {
     if (edges.empty()) return;
     for (const int edge : edges) {
       const auto& [a, b] = whole.edges[edge];
-      segments.push_back({{numbers[a], numbers[b]}, static_cast<int>(parts.size())});
+      segments.push_back({{numbers[a], numbers[b]}, static_cast<int>(parts.size()), whole.circle_of(edge)});
     }
     parts.push_back(name);
   };
@@ -46,7 +46,7 @@ Submesh::Submesh(const Mesh& whole, const std::vector<int>& triangles) {
       if (other >= 0 && taken[one] != taken[other]) cut.push_back(edge);
     }
   add(kCut, cut);
-  mesh = make_mesh(std::move(points), std::move(renumbered), parts, segments);
+  mesh = make_mesh(std::move(points), std::move(renumbered), parts, segments, whole.circles);
 }
 
 }  // namespace signorini

@@ -17,14 +17,25 @@ struct Rectangle {
   Vector size{1, 1};
 };
 
+/// The edge of a polygon's ring from one vertex to the next as an arc of a circle: of the two arcs the
+/// shorter one, or the long one; of half circles the counter-clockwise one, or as the long one the clockwise.
+struct Arc {
+  int ring = 0;    ///< 0 for the outer ring, i + 1 for hole i
+  int vertex = 0;  ///< where it begins
+  Point centre{0, 0};
+  bool is_long = false;
+};
+
 /// A polygon with holes. Rings close by themselves (the last vertex is joined to the first), and run either
-/// way round: the domain is what lies inside the outer ring and outside the holes.
+/// way round: the domain is what lies inside the outer ring and outside the holes. Edges may be arcs; a ring
+/// with one vertex, from which an arc leads back to it, is a circle.
 struct Polygon {
   std::vector<Point> vertices;
   std::vector<std::vector<Point>> holes;
   /// The part of each outer edge, edge i from vertex i to vertex i + 1; edges of the same name form one part.
   /// Empty stands for `side0`, `side1`, … The edges of a hole form the part `hole0`, `hole1`, …
   std::vector<std::string> sides;
+  std::vector<Arc> arcs{};
 };
 
 /// A mesh as a client gives it: points, triangles of point numbers (from 0), and for each part of the
@@ -33,6 +44,8 @@ struct MeshData {
   std::vector<Point> points;
   std::vector<std::array<int, 3>> triangles;
   std::vector<std::pair<std::string, std::vector<std::array<int, 2>>>> boundary;
+  /// Sentences on what was left out to get it.
+  std::vector<std::string> notes = {};
 };
 
 using Domain = std::variant<Rectangle, Polygon, MeshData>;
@@ -61,8 +74,8 @@ struct LocalSize {
   double size = 0;
 };
 
-/// A mesh that refines itself: until the relative error bound is at most `tolerance`, in (0, 1), and as long as
-/// it has at most so many triangles.
+/// A mesh that refines itself: until the relative error bound is at most `tolerance`, in (0, 1), and as long
+/// as it has at most so many triangles.
 struct Adaptive {
   double tolerance = 0;
   int max_triangles = 100'000;
@@ -79,7 +92,7 @@ struct MeshRequest {
   Fineness fineness = Divisions{};
   Pattern pattern = Pattern::right;
   std::vector<LocalSize> sizes;
-  int refine = 0;  ///< uniform refinements, each into four times the triangles
+  int refine = 0;                    ///< uniform refinements, each into four times the triangles
   std::optional<Adaptive> adaptive;  ///< the rest of the request is then the mesh to start from
 };
 

@@ -28,7 +28,20 @@ InvalidProblem::InvalidProblem(std::vector<Fault> faults)
 
 Field::Field(double constant, std::string name) : constant_(constant), name_(std::move(name)) {}
 
+Field::Field(Formula formula, std::string name) : name_(std::move(name)) {
+  if (formula.has_variables())
+    formula_ = std::make_shared<const Formula>(std::move(formula));
+  else
+    constant_ = formula(0, 0);
+}
+
 Field::Field(Function function, std::string name) : function_(std::move(function)), name_(std::move(name)) {}
+
+Field Field::quadratic_on_edges(Function function, std::string name) {
+  Field field(std::move(function), std::move(name));
+  field.quadratic_on_edges_ = true;
+  return field;
+}
 
 double Field::checked(double value, const Point& x) const {
   if (std::isfinite(value)) return value;

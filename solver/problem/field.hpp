@@ -1,11 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include "formula/formula.hpp"
 
 namespace signorini {
 
@@ -34,27 +37,38 @@ class InvalidProblem : public std::runtime_error {
 /// load or boundary data, in the units of the problem.
 ///
 /// A field knows its name (the path of the member that it came from), so that a value that is not finite
-/// is refused with the name and the place. Evaluating a field is not re-entrant if its function is not.
+/// is refused with the name and the place. Of a formula the certificate encloses all values; of a function it
+/// knows only those that it asks for, so that nothing is guaranteed, unless the function says that it is quadratic.
 class Field {
  public:
   using Function = std::function<double(const Point& x, const Vector& normal)>;
 
   Field(double constant = 0, std::string name = {});
+  Field(Formula formula, std::string name);
   Field(Function function, std::string name);
+
+  /// A function that is quadratic along every edge on which it is a boundary value.
+  static Field quadratic_on_edges(Function function, std::string name);
 
   /// The value at x; inside the domain there is no normal. Throws InvalidProblem if it is not finite.
   double operator()(const Point& x, const Vector& normal = Vector::Zero()) const {
+    if (formula_) return checked((*formula_)(x.x(), x.y(), normal.x(), normal.y()), x);
     return function_ ? checked(function_(x, normal), x) : constant_;
   }
 
-  bool is_constant() const { return !function_; }
+  bool is_constant() const { return !function_ && !formula_; }
+  bool is_quadratic_on_edges() const { return quadratic_on_edges_; }
+  /// Null if there is none.
+  const Formula* formula() const { return formula_.get(); }
   const std::string& name() const { return name_; }
 
  private:
   double checked(double value, const Point& x) const;
 
   double constant_ = 0;
+  std::shared_ptr<const Formula> formula_;
   Function function_;
+  bool quadratic_on_edges_ = false;
   std::string name_;
 };
 
@@ -72,6 +86,7 @@ class VectorField {
   }
 
   int size() const { return static_cast<int>(components_.size()); }
+  const std::vector<Field>& fields() const { return components_; }
 
  private:
   std::vector<Field> components_;

@@ -35,6 +35,9 @@ struct Pressure {
 /// A direction d of any length, for an elastic body only, takes the place of the normal: u_d = u·d/|d|, and
 /// the reaction acts along −d. For a foundation with a normal of its own, such as a plane, −d is that normal.
 /// It must point out of the body on every edge of the part.
+///
+/// On an arc the gap is that of the arc's points, with the arc's normal (fem/clearance_space.hpp); so are the
+/// data of all other conditions, but that a pressure acts along the normal of the chord.
 struct Contact {
   Field gap;
   Vector direction = Vector::Zero();  ///< zero stands for the normal

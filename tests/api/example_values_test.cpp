@@ -20,8 +20,8 @@ struct Expected {
   Value energy, force;
 };
 
-/// Unless a comment says otherwise, the values are those of tests/problems/primal.py, quadratic displacements on
-/// the example's mesh refined twice; its own error is far below the tolerance.
+/// Unless a comment says otherwise, the values are those of quadratic displacements, as
+/// tests/campaign/energy.py computes them, on meshes so fine that their own error is far below the tolerance.
 const std::vector<Expected> all_expected{
     // The energy lies between the guaranteed bounds −0.42375662 and −0.42375654 of a solve to 0.1 %.
     {"adaptive-mesh", {-0.4237566, 3e-5}, {1.56482, 1e-4}},
@@ -32,7 +32,7 @@ const std::vector<Expected> all_expected{
     // Force: the traction 0.1 on the roof, 2 hypot(1, 0.2).
     {"given-mesh", {-0.00464453704, 5e-3}, {0.2 * std::hypot(1, 0.2), 1e-11}},
     {"gmsh-block", {-0.00168815688, 2e-3}, {0.749933685, 1e-3}},
-    // The supports' reactions at the corners count in the force, but not in that of primal.py.
+    // The supports' reactions at the corners count in the force, but not in that of energy.py.
     {"graded-stiffness", {-0.435825844, 1e-3}, {0.292836384, 0.08}},
     {"held-by-contact", {-0.0804106306, 1e-3}, {1, 1e-11}},  // force: the load
     // The force to six digits by an independent program on finer meshes.

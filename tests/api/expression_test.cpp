@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <muParser.h>
 
 #include "faults_of.hpp"
 
@@ -124,6 +127,90 @@ TEST(Expression, CopiesOfAFieldAreGoodWithoutTheFirst) {
     copy = field;
   }
   EXPECT_EQ(copy(Point(3, 4)), 12);
+}
+
+/// Random expressions of all that there is, as another parser reads them.
+class RandomText {
+ public:
+  explicit RandomText(unsigned seed) : engine_(seed) {}
+
+  std::string operator()(int depth) {
+    if (depth == 0) return leaf();
+    switch (choose(5)) {
+      case 0:
+        return function(depth);
+      case 1:
+        return "(" + (*this)(depth - 1) + blank() + "?" + (*this)(depth - 1) + ":" + (*this)(depth - 1) + ")";
+      case 2:
+        return sign() + "(" + (*this)(depth - 1) + ")";
+      default: {
+        // Without parentheses: what binds more strongly must be known.
+        static const char* const signs[] = {"+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "&&", "||"};
+        return operand(depth) + blank() + signs[choose(13)] + blank() + operand(depth) + signs[choose(5)] + leaf();
+      }
+    }
+  }
+
+ private:
+  int choose(int n) { return std::uniform_int_distribution<>(0, n - 1)(engine_); }
+  std::string blank() { return choose(3) ? "" : " "; }
+  std::string sign() { return choose(2) ? "-" : ""; }
+  std::string operand(int depth) { return choose(2) ? leaf() : (*this)(depth - 1); }
+  std::string leaf() {
+    static const char* const leaves[] = {"x", "y", "2", "0.5", "1e-1", "3.", ".25", "pi", "1.5E+0"};
+    return leaves[choose(9)];
+  }
+  std::string function(int depth) {
+    const std::vector<std::string_view>& names = function_names();
+    const std::string name(names[choose(static_cast<int>(names.size()))]);
+    int arguments = name == "atan2" ? 2 : 1;
+    if (name == "min" || name == "max" || name == "sum" || name == "avg") arguments = 1 + choose(3);
+    std::string text = name + "(";
+    for (int i = 0; i < arguments; ++i) text += (i ? "," : "") + (*this)(depth - 1);
+    return text + ")";
+  }
+
+  std::mt19937 engine_;
+};
+
+TEST(Expression, IsReadAsMuParserReadsIt) {
+  mu::Parser parser;
+  // Which folds 0.5 && 0.5 to 0.
+  parser.EnableOptimizer(false);
+  double x = 0.37, y = -1.21;
+  parser.DefineVar("x", &x);
+  parser.DefineVar("y", &y);
+  parser.DefineConst("pi", pi);
+  RandomText random(5);
+  int finite = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const std::string text = random(3);
+    if (text.size() > 1000) continue;
+    parser.SetExpr(text);
+    double theirs = 0;
+    std::string their_fault;
+    try {
+      theirs = parser.Eval();
+    } catch (const mu::ParserError& error) {
+      their_fault = error.GetMsg();
+    }
+    try {
+      const double ours = parse_formula(text, false)(x, y);
+      ASSERT_EQ(their_fault, "") << text;
+      if (std::isnan(theirs)) {
+        ASSERT_TRUE(std::isnan(ours)) << text;
+        continue;
+      }
+      ++finite;
+      if (std::isinf(theirs) || theirs == 0)
+        ASSERT_EQ(ours, theirs) << text;
+      else
+        ASSERT_NEAR(ours / theirs, 1, 1e-10) << text;
+    } catch (const std::invalid_argument& fault) {
+      ASSERT_NE(their_fault, "") << text << ": " << fault.what();
+    }
+  }
+  EXPECT_GT(finite, 1000);
 }
 
 }  // namespace

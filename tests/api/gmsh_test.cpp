@@ -131,6 +131,55 @@ TEST(Gmsh, ReadsLinesThatEndAsOnWindows) {
   expect_square(parse_gmsh(text));
 }
 
+/// Number of partitions, then the partitions; those of which it is a ghost are negative.
+TEST(Gmsh, ReadsThePartitionsOfVersion2) {
+  std::string text = version2;
+  for (const auto& [from, to] :
+       {std::pair("2 1 2 5 1 1 20", "2 1 4 5 1 1 2 1 20"),
+        std::pair("3 1 2 7 2 20 3", "3 1 6 7 2 3 1 -2 -7 20 3"),
+        std::pair("4 1 2 7 3 3 4", "4 1 3 7 3 0 3 4"), std::pair("6 1 2 0 5 1 3", "6 1 5 0 5 2 1 2 1 3"),
+        std::pair("7 2 2 9 1 1 20 3", "7 2 4 9 1 1 1 1 20 3"),
+        std::pair("8 2 2 9 1 1 3 4", "8 2 5 9 1 2 2 -1 1 3 4")})
+    text = replaced(text, from, to);
+  expect_square(parse_gmsh(text));
+}
+
+TEST(Gmsh, ReadsGroupsOfEitherOrientation) {
+  expect_square(parse_gmsh(replaced(version2, "3 1 2 7 2 20 3", "3 1 2 -7 2 20 3")));
+}
+
+std::string lifted(double z, double tilt = 0) {
+  std::string text = version2;
+  const auto node = [&](int tag, int x, int y) {
+    const std::string at = std::to_string(tag) + ' ' + std::to_string(x) + ' ' + std::to_string(y) + ' ';
+    text = replaced(text, '\n' + at + "0\n", '\n' + at + std::to_string(z + tilt * x) + '\n');
+  };
+  node(1, 0, 0);
+  node(20, 1, 0);
+  node(3, 1, 1);
+  node(4, 0, 1);
+  return text;
+}
+
+TEST(Gmsh, LeavesAConstantHeightOutAndSaysSo) {
+  EXPECT_TRUE(parse_gmsh(version2).notes.empty());
+  const MeshData data = parse_gmsh(lifted(-2.5));
+  expect_square(data);
+  ASSERT_EQ(data.notes.size(), 1u);
+  EXPECT_NE(data.notes[0].find("z = -2.5"), std::string::npos) << data.notes[0];
+  EXPECT_EQ(gmsh_mesh(lifted(-2.5)).notes, data.notes);
+}
+
+TEST(Gmsh, RefusesAMeshInAnotherPlane) {
+  EXPECT_NE(fault_of(lifted(0, 0.25), parse_gmsh).find("must be plane"), std::string::npos);
+  std::string upright = version2;
+  for (const auto& [from, to] :
+       {std::pair("\n3 1 1 0\n", "\n3 1 0 1\n"), std::pair("\n4 0 1 0\n", "\n4 0 0 1\n")})
+    upright = replaced(upright, from, to);
+  const std::string fault = fault_of(upright, parse_gmsh);
+  EXPECT_NE(fault.find("turn it into the plane of x and y"), std::string::npos) << fault;
+}
+
 TEST(Gmsh, MakesAMesh) {
   const Mesh mesh = gmsh_mesh(version4);
   EXPECT_DOUBLE_EQ(mesh.area(), 1);

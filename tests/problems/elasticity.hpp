@@ -36,8 +36,8 @@ inline Problem lowered_block(Scheme scheme, Pattern pattern, double poisson, dou
   return problem;
 }
 
-/// An L-shaped body on a foundation, with a roller at its left side, pressed down on its foot's top and pulled at
-/// its tip: stress is singular at the inner corner and where the contact opens.
+/// An L-shaped body on a foundation, with a roller at its left side, pressed down on its foot's top and
+/// pulled at its tip: stress is singular at the inner corner and where the contact opens.
 inline Problem pressed_angle(Scheme scheme) {
   Problem problem;
   problem.domain = Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
@@ -68,8 +68,30 @@ inline Problem half_disc(Scheme scheme) {
   problem.mesh.fineness = LargestEdge{0.3};
   problem.scheme = scheme;
   problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
-  problem.boundary = {{"arc", Contact{function([](const Point& x) { return x.y(); })}},
+  problem.boundary = {{"arc", Contact{formula("y")}},
                       {"top", Fixed{VectorField(0, -0.02)}}};
+  return problem;
+}
+
+/// A square with a hole that a foundation overlaps all round, fixed below, on rollers at its left, with a
+/// traction on top that jumps in the middle. The hole has three or four corners, or more on a circle.
+inline Problem touching_hole(Scheme scheme, double poisson, int corners) {
+  std::vector<Point> hole{{0.3, 0.3}, {0.7, 0.3}, {0.5, 0.7}};
+  if (corners > 3) hole.clear();
+  for (int i = 0; i < corners && corners > 3; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + 0.5) / corners;
+    hole.push_back({0.5 + 0.2 * std::cos(angle), 0.5 + 0.2 * std::sin(angle)});
+  }
+  Problem problem;
+  problem.domain = Polygon{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {hole}, {"bottom", "right", "top", "left"}};
+  problem.mesh.fineness = LargestEdge{0.25};
+  problem.scheme = scheme;
+  problem.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
+  const Field jump = function([](const Point& x) { return x.x() < 0.5 ? -0.1 : 0.05; });
+  problem.boundary = {{"bottom", Fixed{}},
+                      {"left", Roller{}},
+                      {"top", Traction{VectorField(Field(0.02), jump)}},
+                      {"hole0", Contact{-0.01}}};
   return problem;
 }
 
@@ -139,17 +161,21 @@ struct Smooth {
     Problem problem;
     problem.mesh = {Divisions{n, n}, Pattern::right};
     problem.scheme = scheme;
-    const Smooth self = *this;
     const double nu = lambda / (2 * (lambda + mu));
     problem.material = YoungPoisson{Field(1), Field(nu), Plane::strain};
-    const auto component = [](auto value) {
-      return VectorField(Field([=](const Point& x, const Vector& n2) { return value(x, n2)[0]; }, "/test"),
-                         Field([=](const Point& x, const Vector& n2) { return value(x, n2)[1]; }, "/test"));
-    };
-    problem.body = component([=](const Point& x, const Vector&) { return self.body(x); });
-    const Fixed fixed{component([=](const Point& x, const Vector&) { return self.u(x); })};
-    const Traction traction{
-        component([=](const Point& x, const Vector& normal) -> Vector { return self.stress(x) * normal; })};
+    const std::string l = digits(lambda), m = digits(mu), bump = "sin(pi*x)*sin(pi*y)/" + l,
+                      slope = "-" + digits(lambda + mu) + "*pi^2*cos(pi*(x+y))/" + l;
+    problem.body = VectorField(
+        formula("-" + m + "*pi^2*(2*cos(2*pi*x)*sin(2*pi*y)-4*sin(pi*x)^2*sin(2*pi*y)-2*" + bump + ")" + slope),
+        formula("-" + m + "*pi^2*(-2*cos(2*pi*y)*sin(2*pi*x)+4*sin(pi*y)^2*sin(2*pi*x)-2*" + bump + ")" + slope));
+    const Fixed fixed{VectorField(formula("sin(pi*x)^2*sin(2*pi*y)+" + bump),
+                                  formula("-sin(pi*y)^2*sin(2*pi*x)+" + bump))};
+    const std::string by_x = "pi*cos(pi*x)*sin(pi*y)/" + l, by_y = "pi*sin(pi*x)*cos(pi*y)/" + l,
+                      trace = l + "*(" + by_x + "+" + by_y + ")", twist = "pi*sin(2*pi*x)*sin(2*pi*y)",
+                      xx = "(2*" + m + "*(" + twist + "+" + by_x + ")+" + trace + ")",
+                      yy = "(2*" + m + "*(-" + twist + "+" + by_y + ")+" + trace + ")",
+                      xy = "(" + m + "*(2*pi*sin(pi*x)^2*cos(2*pi*y)-2*pi*sin(pi*y)^2*cos(2*pi*x)+" + by_x + "+" + by_y + "))";
+    const Traction traction{VectorField(formula(xx + "*nx+" + xy + "*ny"), formula(xy + "*nx+" + yy + "*ny"))};
     problem.boundary = {{"left", fixed}, {"bottom", fixed}, {"right", traction}, {"top", traction}};
     return problem;
   }

@@ -30,7 +30,7 @@ class Shelf : public OperatorCache {
 inline Field wave(std::mt19937& engine, double mean, double size) {
   std::uniform_real_distribution<> number(-4, 4);
   const double a = number(engine), b = number(engine), phase = number(engine);
-  return function([=](const Point& x) { return mean + size * std::sin(a * x.x() + b * x.y() + phase); });
+  return wave(mean, size, a, b, phase);
 }
 
 /// The problem with other gaps, loads, tractions and boundary values, its kinds of conditions as they were.

@@ -245,6 +245,30 @@ TEST_F(Solves, AreValidatedWithoutASolve) {
   EXPECT_TRUE(json::parse(get("/v1/solves")->body).at("solves").empty());
 }
 
+TEST_F(Solves, AreValidatedByWhatTheSolveRefuses) {
+  const auto refused = [&](json problem, const std::string& word) {
+    const auto reply = client_.Post("/v1/validate", problem.dump(), "application/json");
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 422) << reply->body;
+    EXPECT_NE(reply->body.find(word), std::string::npos) << reply->body;
+  };
+  json block = {{"model", "elasticity"},
+                {"domain", {{"type", "rectangle"}}},
+                {"mesh", {{"divisions", {4, 4}}}},
+                {"material", {{"young", 200}, {"poisson", 0.3}}},
+                {"boundary", {{"bottom", {{"type", "contact"}}}}},
+                {"scheme", "conforming"}};
+  refused(block, "translation along (1, 0)");
+  block["boundary"]["left"] = {{"type", "roller"}};
+  refused(block, "translation along (0, 1)");
+  block["load"]["body"] = {0, "1 - x"};
+  refused(block, "lifts it off");
+  block["load"]["body"] = {0, -1};
+  EXPECT_EQ(client_.Post("/v1/validate", block.dump(), "application/json")->status, 200);
+  block["mesh"]["adaptive"] = {{"tolerance", 0.1}, {"max_triangles", 20}};
+  refused(block, "/mesh/adaptive/max_triangles");
+}
+
 TEST_F(Solves, StreamALargeResultPlainAndCompressed) {
   const std::string id = json::parse(post("large", "?wait=5&fields=summary")->body).at("id");
   const std::string path = "/v1/solves/" + id + "/result";

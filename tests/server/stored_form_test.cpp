@@ -8,6 +8,7 @@
 #include "api/vtu.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/run.hpp"
+#include "solution_members.hpp"
 #include "store_jobs.hpp"
 
 namespace signorini::server {
@@ -70,6 +71,15 @@ TEST(StoredForm, ServesEveryFormatAsTheSolutionDid) {
     EXPECT_EQ(written(*unpack_verdict(pack_verdict(verdict_of(ending))).summary),
               written(ending.solution->summary));
   }
+}
+
+TEST(StoredForm, KeepsEveryMember) {
+  Solution solution;
+  Filler fill;
+  fill(solution);
+  const Ending ending = ending_of(std::move(solution));
+  EXPECT_TRUE(are_equal(*stored_and_read(ending).solution, *ending.solution));
+  EXPECT_TRUE(are_equal(*unpack_verdict(pack_verdict(verdict_of(ending))).summary, ending.solution->summary));
 }
 
 TEST(StoredForm, KeepsWhatIsNotThere) {

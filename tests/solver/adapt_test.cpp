@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -165,7 +166,8 @@ TEST(Adapt, RefinesPolygonsAndGivenMeshes) {
                              {"floor", "right", "step", "step", "top", "left"}};
     problem.mesh = MeshRequest(LargestEdge{0.6});
     problem.body = VectorField(-1);
-    problem.boundary = {{"right", Fixed{}}, {"top", Fixed{}}, {"floor", Contact{0.05}}, {"hole0", Contact{0.1}}};
+    problem.boundary = {
+        {"right", Fixed{}}, {"top", Fixed{}}, {"floor", Contact{0.05}}, {"hole0", Contact{0.1}}};
     const Solution polygon = solve(adaptive(problem, 0.08, 50000), by(ActiveSet{}));
     EXPECT_EQ(polygon.summary.outcome, Outcome::converged) << polygon.summary.advice;
     EXPECT_EQ(misfiled_edges(polygon.mesh), 0);
@@ -204,6 +206,59 @@ TEST(Adapt, EndsWhereRefinementIsOfNoUse) {
   EXPECT_LT(solution.summary.error_bound->relative, 1e-6);
 }
 
+TEST(Adapt, ServesTheLevelWithTheSmallestBound) {
+  // The solution lies in the spaces, and rounding grows with the mesh.
+  Problem problem = problems::paper(Scheme::conforming, 2);
+  problem.body = {};
+  problem.boundary = {{"left", Fixed{}}, {"right", Fixed{VectorField(1)}}, {"bottom", Contact{}}};
+  const Solution solution = solve(adaptive(problem, 1e-300, 100000), by(ActiveSet{}));
+  const std::vector<Level>& levels = solution.summary.levels;
+  const Level best = *std::ranges::min_element(levels, {}, &Level::relative);
+  ASSERT_LT(best.number, levels.back().number);
+  ASSERT_LT(best.relative, levels.back().relative);
+  EXPECT_EQ(solution.summary.error_bound->relative, best.relative);
+  EXPECT_EQ(solution.summary.triangles, best.triangles);
+  EXPECT_EQ(solution.mesh.triangles.size(), static_cast<std::size_t>(best.triangles));
+  EXPECT_EQ(solution.error_squares.size(), best.triangles);
+  EXPECT_EQ(static_cast<int>(levels.size()), levels.back().number);
+  int iterations = 0;
+  for (const Level& level : levels) iterations += level.iterations;
+  EXPECT_EQ(solution.summary.iterations, iterations);
+  EXPECT_EQ(solution.history.size(), static_cast<std::size_t>(iterations));
+  EXPECT_NE(solution.summary.advice.find("level " + std::to_string(best.number) + ", the best of " +
+                                         std::to_string(levels.back().number)),
+            std::string::npos)
+      << solution.summary.advice;
+}
+
+TEST(Adapt, LowersTheBoundWhereAHoleTouches) {
+  for (const Scheme scheme : schemes)
+    for (const double poisson : {0.3, 0.49999})
+      for (const int corners : {3, 4, 12}) {
+        const Solution solution =
+            solve(adaptive(problems::touching_hole(scheme, poisson, corners), 1e-9, 3000), by(ActiveSet{}));
+        const std::vector<Level>& levels = solution.summary.levels;
+        EXPECT_GT(levels.back().triangles, 1500) << solution.summary.advice;
+        EXPECT_LT(levels.back().relative, scheme == Scheme::conforming ? 0.2 : 0.5);
+        for (std::size_t i = 1; i < levels.size(); ++i) {
+          const double before = levels[i].triangles > 300 ? levels[i - 1].relative : 1e9;
+          EXPECT_LT(levels[i].relative, 1.05 * before)
+              << corners << " corners, Poisson's ratio " << poisson << ", level " << i + 1;
+        }
+      }
+}
+
+TEST(Adapt, SolvesElasticBodiesToOneThousandth) {
+  for (const auto& [problem, most] : {std::pair(problems::pressed_angle(Scheme::conforming), 35000),
+                                      {problems::half_disc(Scheme::conforming), 55000}}) {
+    const Solution solution = solve(adaptive(problem, 1e-3, most), by(ActiveSet{}));
+    EXPECT_EQ(solution.summary.outcome, Outcome::converged) << solution.summary.advice;
+    EXPECT_LE(solution.summary.error_bound->relative, 1e-3);
+    EXPECT_TRUE(solution.summary.error_bound->guaranteed);
+    EXPECT_LE(solution.summary.levels.size(), 14u);
+  }
+}
+
 TEST(Adapt, KeepsTheLastLevelWhenCancelled) {
   const Problem problem = adaptive(problems::paper(Scheme::nonconforming, 4), 1e-6, 1000000);
   UntilLevel third(3);
@@ -218,7 +273,8 @@ TEST(Adapt, KeepsTheLastLevelWhenCancelled) {
 TEST(Adapt, KeepsTheLastLevelWhenTheTimeIsUp) {
   Settings settings = by(ActiveSet{});
   settings.time_limit = 0.3;
-  const Solution solution = solve(adaptive(problems::paper(Scheme::nonconforming, 4), 1e-9, 20'000'000), settings);
+  const Solution solution =
+      solve(adaptive(problems::paper(Scheme::nonconforming, 4), 1e-9, 20'000'000), settings);
   EXPECT_EQ(solution.summary.outcome, Outcome::time_limit);
   EXPECT_NE(solution.summary.advice.find("solver.time_limit"), std::string::npos);
   EXPECT_GT(solution.summary.levels.size(), 1u);

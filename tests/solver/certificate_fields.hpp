@@ -85,7 +85,7 @@ class CertificateFields {
         AdmissiblePair{{discretization_, solution_, x}, {discretization_, solution_.stress, clearance}});
     pair_->v.relax(work_of_loads(discretization_), kStepsFromAverage, progress_);
     minimize_potential(discretization_, pair_->v, clearance, pair_->pressure, progress_);
-    pair_->of_balance = potential_of_balance(discretization_, {discretization_, progress_}, progress_);
+    pair_->of_balance = potential_of_balance(discretization_, progress_);
   }
 
   const Discretization& discretization() const { return discretization_; }

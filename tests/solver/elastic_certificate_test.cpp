@@ -96,7 +96,7 @@ double distance(const Problem& problem, const Solution& coarse, const Solution& 
 Problem lifted_block(Scheme scheme) {
   Problem problem = problems::block(scheme, Pattern::crossed, 3, 0.3);
   problem.mesh.fineness = Divisions{12, 6};
-  const Field pull = problems::function([](const Point& x) { return x.x() < 1 ? -1. : 0.1; });
+  const Field pull = problems::formula("x < 1 ? -1 : 0.1");
   problem.boundary = {{"left", Roller{}}, {"bottom", Contact{}}, {"top", Traction{VectorField(0, pull)}}};
   return problem;
 }
@@ -105,7 +105,7 @@ Problem lowered_disc(Scheme scheme) {
 }
 Problem disc_lowered_along_y(Scheme scheme) {
   Problem problem = problems::half_disc(scheme);
-  problem.boundary["arc"] = Contact{problems::function([](const Point& x) { return x.y(); }), Vector(0, -1)};
+  problem.boundary["arc"] = Contact{problems::formula("y"), Vector(0, -1)};
   return problem;
 }
 

@@ -319,7 +319,7 @@ TEST(Mended, AMeshTooCoarseForThePairIsRefinedAndSaysSo) {
   problem.boundary["left"] = Fixed{};
   const Solution mended = solve(problem, {ActiveSet{}, {}});
   ASSERT_FALSE(mended.summary.notes.empty());
-  EXPECT_NE(mended.summary.notes[0].find("not stable on 2 triangles"), std::string::npos);
+  EXPECT_NE(mended.summary.notes[0].find("not stable on the 2 triangles"), std::string::npos);
   EXPECT_NE(mended.summary.notes.back().find("makes " + std::to_string(mended.summary.triangles)),
             std::string::npos);
   problem.mesh.fineness = Divisions{4, 4};

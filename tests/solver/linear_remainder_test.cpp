@@ -95,7 +95,7 @@ LocalStress<2>::LocalStress(const std::array<Point, 3>& corners) {
   for (int j = 0; j < kUnknowns; ++j)
     data.col(j).tail<12>() =
         (-map.determinant * inverse * at_nodes<2>(load.col(j).reshaped(2, 3))).reshaped();
-  static const MacroRule rule(spaces_of(Scheme::nonconforming, 2), 1);
+  const MacroRule& rule = macro_rule(spaces_of(Scheme::nonconforming, 2), 6);
   const MacroNorms norms(rule, map, SymmetricLaw(Eigen::Matrix4d::Identity()));
   const Eigen::MatrixXd root = norms.correction.leftCols<MacroElement::kData>() * data;
   energy = root.transpose() * root;

@@ -71,7 +71,8 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
         Progress progress(observer, std::nullopt);
         Eigen::VectorXd start;
         if (started) start = random(n, 1).cwiseAbs();
-        const ContactResult result = accelerated_uzawa(contact, {1e-12, 10000}, progress, start);
+        const ContactResult result = accelerated_uzawa(
+            contact, {1e-12, 10000}, progress, [](const Eigen::VectorXd&) { return 0.; }, start);
         ASSERT_EQ(result.outcome, Outcome::converged) << n << ' ' << rank;
         EXPECT_GE(result.clearance.minCoeff(), 0);
         const double scale = (contact.s * x).norm() + contact.c.norm();

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "certify/contact_pressure.hpp"
+#include "certify/law_pieces.hpp"
+#include "fem/discretization.hpp"
+
+namespace signorini {
+
+/// What is not known of the load and of the traction acts with an unknown force on the triangles and on the edges of
+/// Γ_F; what the pressure lacks, on edges of Γ_C. Some stress carries it from triangle to triangle, along a spanning
+/// forest, to Γ_D, where any traction is free: with forces F and moments M of known size it is at most
+///
+///     ‖τ‖_C  ≤  (Σ a_T²)^{1/2},    a_T = √c |J|² / √det J · ν |z|,
+///
+/// z the data of the element that makes the stress on T (tractions on edges, divergence), ν the norm of the map from
+/// them to the stress on the reference triangle, J the Jacobian, c the largest eigenvalue of C; |J| in place of |J|²
+/// for a membrane. The bound knows no signs and is some thousand times too large, of something that is small.
+///
+/// Without Γ_D all of it is carried to one triangle, and there meets what p* and the rollers take: p* (1 + r·d) in
+/// place of p*, and W r·n on rollers, W the mean of p*, with the rigid motion r for which G r has the resultant,
+///
+///     G_ij = ∫_{Γ_C} p* (ρ_i·d) (ρ_j·d) + ∫_{rollers} W (ρ_i·n) (ρ_j·n).
+///
+/// That is admissible if |r·d| ≤ 1.
+struct CarriedLoads {
+  double norm = 0;
+  /// Without Γ_D: the largest |r·d|, by which the contact term may grow.
+  double change_of_pressure = 0;
+  /// Neither Γ_D nor Γ_C and rollers take it: then the norm says nothing.
+  bool is_held = true;
+};
+
+CarriedLoads carry_uncertain_loads(const Discretization& problem, const LawOnMesh& laws,
+                                   const ContactPressure& pressure);
+
+}  // namespace signorini

@@ -1,0 +1,244 @@
+#include "certify/law_pieces.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+
+#include "fem/raviart_thomas.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What the integrals of a triangle may be off by, relative: a bound is the root of such numbers.
+/// Those of elastic bodies are larger.
+double tolerance_of(const Material& material) {
+  return components(material) == 1 ? 1e-8 : 1e-6;
+}
+/// The same where the law jumps along a curve, on a few triangles.
+constexpr double kToleranceOfJumps = 2e-4;
+
+constexpr int kOrders = LawPiece::kOrders;
+using Errors = std::array<double, kOrders>;
+
+struct Quality {
+  Errors errors;
+  double softest, stiffest;
+};
+
+Quality unknown() {
+  Errors errors;
+  errors.fill(kInfinity);
+  return {errors, kInfinity, kInfinity};
+}
+
+/// What a value differs from a polynomial of degree k − 1 by.
+double error(const TaylorModel& value, int k) {
+  return k > TaylorModel::kDegree ? value.remainder() : kInfinity;
+}
+double error(const Series& value, int k) {
+  return largest(value[k]);
+}
+
+template <typename Value>
+Value operator+(const Value& a, const Value& b) {
+  return smooth(Operation::add, a, b);
+}
+template <typename Value>
+Value operator-(const Value& a, const Value& b) {
+  return smooth(Operation::subtract, a, b);
+}
+template <typename Value>
+Value operator*(const Value& a, const Value& b) {
+  return smooth(Operation::multiply, a, b);
+}
+template <typename Value>
+Value operator/(const Value& a, const Value& b) {
+  return smooth(Operation::divide, a, b);
+}
+
+/// A symmetric matrix of enclosures.
+template <int N, typename Value>
+struct EnclosedMatrix {
+  std::array<std::array<Value, N>, N> entries;
+
+  /// Of what `of` takes from the entries: a bound of the norm of a matrix with entries of these sizes.
+  template <typename Of>
+  double largest_row_sum(const Of& of) const {
+    double largest = 0;
+    for (const auto& row : entries) {
+      double sum = 0;
+      for (const Value& own : row) sum += of(own);
+      largest = std::max(largest, sum);
+    }
+    return largest;
+  }
+
+  /// Bounds of the eigenvalues: those of the middle of all values, and what the rest moves them by.
+  std::array<double, 2> eigenvalues() const {
+    Eigen::Matrix<double, N, N> middle;
+    for (int i = 0; i < N; ++i)
+      for (int j = 0; j < N; ++j) {
+        if (!is_known(range(entries[i][j]))) return {-kInfinity, kInfinity};
+        middle(i, j) = boost::numeric::median(range(entries[i][j]));
+      }
+    const double moved =
+        largest_row_sum([](const Value& own) { return (range(own).upper() - range(own).lower()) / 2; });
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> own(middle, Eigen::EigenvaluesOnly);
+    return {own.eigenvalues().minCoeff() - moved, own.eigenvalues().maxCoeff() + moved};
+  }
+
+  Value cofactor(int row, int column) const {
+    if constexpr (N == 2) {
+      const Value& own = entries[1 - row][1 - column];
+      return row == column ? own : smooth(Operation::negate, own);
+    } else {
+      const int a = (row + 1) % 3, b = (row + 2) % 3, c = (column + 1) % 3, d = (column + 2) % 3;
+      return entries[a][c] * entries[b][d] - entries[a][d] * entries[b][c];
+    }
+  }
+};
+
+template <int N, typename Value>
+Quality quality(const EnclosedMatrix<N, Value>& stiffness) {
+  const auto [least, most] = stiffness.eigenvalues();
+  if (!(least > 0) || !std::isfinite(most)) return unknown();
+  Value determinant = stiffness.entries[0][0] * stiffness.cofactor(0, 0);
+  for (int j = 1; j < N; ++j) determinant = determinant + stiffness.entries[0][j] * stiffness.cofactor(0, j);
+  if (!(range(determinant).lower() > 0)) return unknown();
+  EnclosedMatrix<N, Value> compliance;
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) compliance.entries[i][j] = stiffness.cofactor(j, i) / determinant;
+  Quality all{{}, 1 / least, most};
+  for (int k = 0; k < kOrders; ++k) {
+    const auto of = [k](const Value& own) { return error(own, k); };
+    all.errors[k] = std::max(stiffness.largest_row_sum(of) / least, compliance.largest_row_sum(of) * most);
+  }
+  return all;
+}
+
+template <typename Value>
+Quality quality(const MembraneStiffness&, const std::vector<Value>& fields) {
+  return quality(EnclosedMatrix<2, Value>{{{{fields[0], fields[1]}, {fields[1], fields[2]}}}});
+}
+
+/// σ and ε are multiples of each other on tensors without trace and on those that are all trace.
+template <typename Value>
+Quality quality(const YoungPoisson& material, const std::vector<Value>& fields) {
+  const Value &young = fields[0], &poisson = fields[1];
+  const Value one = constant_like(young, 1), two = constant_like(young, 2);
+  const bool is_sound = range(young).lower() > 0 && range(poisson).lower() > -1 && range(poisson).upper() < 0.5;
+  if (!is_sound) return unknown();
+  const Value shear = (one + poisson) / young,
+              volume = material.plane == Plane::strain ? shear * (one - two * poisson) : (one - poisson) / young;
+  const double least = std::min(range(shear).lower(), range(volume).lower());
+  if (!(least > 0)) return unknown();
+  Quality all{{}, std::max(range(shear).upper(), range(volume).upper()), 1 / least};
+  for (const Value& own : {shear, volume, one / shear, one / volume})
+    for (int k = 0; k < kOrders; ++k) all.errors[k] = std::max(all.errors[k], error(own, k) / range(own).lower());
+  return all;
+}
+
+template <typename Value>
+Quality quality(const HookeTensor&, const std::vector<Value>& fields) {
+  const Value root = constant_like(fields[0], std::numbers::sqrt2), two = constant_like(fields[0], 2);
+  const Value &xx = fields[0], &xy = fields[1], &yy = fields[3];
+  const Value xs = root * fields[2], ys = root * fields[4], ss = two * fields[5];
+  return quality(EnclosedMatrix<3, Value>{{{{xx, xy, xs}, {xy, yy, ys}, {xs, ys, ss}}}});
+}
+
+std::vector<const Field*> fields_of(const Material& material) {
+  if (const auto* membrane = std::get_if<MembraneStiffness>(&material))
+    return {&membrane->xx, &membrane->xy, &membrane->yy};
+  if (const auto* isotropic = std::get_if<YoungPoisson>(&material)) return {&isotropic->young, &isotropic->poisson};
+  std::vector<const Field*> fields;
+  for (const Field& own : std::get<HookeTensor>(material).entries) fields.push_back(&own);
+  return fields;
+}
+
+template <typename Value>
+Quality quality_of(const Material& material, const std::vector<Value>& fields) {
+  return std::visit([&](const auto& own) { return quality(own, fields); }, material);
+}
+
+}  // namespace
+
+int LawPiece::degree_of_rule(int of_fields, int order) const {
+  const double small = order == 0 ? 1e-7 : 1e-9, best = errors.back();
+  for (const int degree : {5, 6, 8, 10, 18})
+    if (degree >= 2 * of_fields && error_of_rule(degree, of_fields) <= std::max(small, 1.5 * best)) return degree;
+  return 30;
+}
+
+std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, CellBudget& budget) {
+  const std::vector<const Field*> fields = fields_of(material);
+  const AffineMap map(corners);
+  std::vector<LawPiece> pieces;
+  bool is_undecided = false;
+  const auto add = [&](const std::array<Point, 3>& cell, double share, const Quality& own) {
+    pieces.push_back({{cell, share, {}}, own.errors, own.softest, own.stiffest});
+  };
+  const Settled settled = [&](const std::array<Point, 3>& cell, double share) {
+    std::vector<Series> series;
+    is_undecided = false;
+    for (const Field* field : fields) {
+      series.push_back(Series(Series::kMost, field->is_constant() ? (*field)(Point::Zero()) : 0));
+      if (field->formula()) {
+        bool undecided = false;
+        series.back() = series_on_triangle(*field->formula(), {map(cell[0]), map(cell[1]), map(cell[2])}, Series::kMost, undecided);
+        is_undecided = is_undecided || undecided;
+      }
+    }
+    const Quality own = quality_of(material, series);
+    if (!(own.errors[kOrders - 1] * std::sqrt(share) <= tolerance_of(material))) return false;
+    add(cell, share, own);
+    return true;
+  };
+  const Acceptance accept = [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
+    const double tolerance = is_undecided ? kToleranceOfJumps : tolerance_of(material);
+    return quality_of(material, models).errors[kOrders - 1] * share <= tolerance * std::sqrt(of_cell);
+  };
+  for_each_piece(
+      fields, corners, accept, budget,
+      [&](const TrianglePiece& piece) { add(piece.corners, piece.share, quality_of(material, piece.models)); },
+      settled);
+  return pieces;
+}
+
+LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, Progress& progress) {
+  const int count = is_constant(material) ? 1 : static_cast<int>(mesh.triangles.size());
+  const std::vector<const Field*> fields = fields_of(material);
+  for (const Field* field : fields)
+    if (!field->is_constant() && !field->formula()) {
+      unmet_.push_back(field->name() + " is a function that is known in single points only: give a formula");
+      whole_.assign(1, {});
+      return;
+    }
+  CellBudget budget{20 * count + 100'000};
+  for (int t = 0; t < count; ++t) {
+    progress.check_in(t);
+    std::vector<LawPiece> pieces = law_pieces(material, mesh.corners(t), budget);
+    LawPiece whole{pieces.front()};
+    for (const LawPiece& own : pieces) {
+      for (int k = 0; k < LawPiece::kOrders; ++k) whole.errors[k] = std::max(whole.errors[k], own.errors[k]);
+      whole.softest = std::max(whole.softest, own.softest);
+      whole.stiffest = std::max(whole.stiffest, own.stiffest);
+    }
+    if (!std::isfinite(whole.errors.back() + whole.softest + whole.stiffest) && unmet_.empty())
+      unmet_.push_back("/material is not known to be positive definite and bounded near " +
+                       to_string(mesh.centroid(t)));
+    if (pieces.size() > 1) cut_.emplace(t, std::move(pieces));
+    whole_.push_back(std::move(whole));
+  }
+}
+
+const std::vector<LawPiece>& LawOnMesh::cut(int t) const {
+  static const std::vector<LawPiece> none;
+  const auto found = cut_.find(t);
+  return found == cut_.end() ? none : found->second;
+}
+
+}  // namespace signorini

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <unordered_map>
+#include <vector>
+
+#include "fem/triangle_pieces.hpp"
+#include "mesh/mesh.hpp"
+#include "problem/material.hpp"
+#include "progress.hpp"
+
+namespace signorini {
+
+/// A part of a triangle on which stiffness E and compliance C are known: they differ from polynomials of degree k − 1
+/// by at most errors[k] times themselves, as quadratic forms.
+struct LawPiece {
+  static constexpr int kOrders = 11;
+
+  TrianglePiece place;
+  std::array<double, kOrders> errors{};
+  double softest = 0;   ///< C is at most this; infinite where E is not known to be positive definite
+  double stiffest = 0;  ///< E is at most this
+
+  /// The degree of the cheapest rule for squares of fields of a degree: one that leaves a small error beside the square
+  /// of the scheme's, or hardly more than the best.
+  int degree_of_rule(int of_fields, int order) const;
+
+  /// Of a rule that is exact for one degree, where fields of another degree are squared.
+  double error_of_rule(int degree, int of_fields) const {
+    return errors[std::clamp(degree - 2 * of_fields + 1, 0, kOrders - 1)];
+  }
+};
+
+/// Cuts a triangle for the fields of the material; a constant one is a single piece without error.
+std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, CellBudget& budget);
+
+/// The law of a problem on all triangles of its mesh.
+class LawOnMesh {
+ public:
+  LawOnMesh(const Material& material, const Mesh& mesh, Progress& progress);
+
+  /// Of the whole triangle if it is a single piece, else the largest of its pieces.
+  const LawPiece& whole(int t) const { return whole_[whole_.size() == 1 ? 0 : t]; }
+  /// The pieces of a triangle that was cut; none of one that was not.
+  const std::vector<LawPiece>& cut(int t) const;
+  /// Why what it says is not certain; empty if it is.
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  std::vector<LawPiece> whole_;
+  std::unordered_map<int, std::vector<LawPiece>> cut_;
+  std::vector<std::string> unmet_;
+};
+
+}  // namespace signorini

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "problem/problem.hpp"
+
+namespace signorini {
+
+/// The body load f on one triangle as scheme and certificate see it, by its projection Πf onto P2.
+///
+/// The integrals behind it are sums over some points of pieces of the triangle. Where f is smooth their errors are
+/// known from Taylor's theorem: f is a polynomial of degree k − 1 but for R_k = max |d^k f(x_T + t (x − x_T)) / dt^k| / k!,
+/// and a rule of degree m integrates f φ with φ of degree j but for 2 R_{m − j + 1} ∫ |φ|, for its weights are positive.
+struct ProjectedLoad {
+  /// Πf at the corners and at the middles of edge 0, 1, 2; a row a component.
+  Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 2, 6> balanced;
+  double rest = 0;  ///< ‖f − Πf‖ is at most this
+  /// (f − Πf, φ) is at most this times max |φ|, for linear and for quadratic φ.
+  double uncertain_force = 0, uncertain_work = 0;
+};
+
+/// The load of a problem on all triangles of its mesh.
+class LoadProjection {
+ public:
+  LoadProjection(const Problem& problem, const Mesh& mesh);
+
+  const ProjectedLoad& operator[](int t) const { return all_[all_.size() == 1 ? 0 : t]; }
+  /// f is not the same all over some triangle.
+  bool varies() const { return all_.size() > 1; }
+  /// Why what it says of f is not certain; empty if it is.
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  std::vector<ProjectedLoad> all_;
+  std::vector<std::string> unmet_;
+};
+
+}  // namespace signorini

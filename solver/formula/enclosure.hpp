@@ -1,0 +1,155 @@
+#pragma once
+
+#include <optional>
+
+#include "formula/formula.hpp"
+#include "formula/interval.hpp"
+
+namespace signorini {
+
+/// Evaluates a formula in enclosures of its values on a cell: Series on an interval, TaylorModel on a triangle.
+/// Statements hold almost everywhere: what is so in single points and on lines does not count, and a difference
+/// that is rounding counts as none.
+///
+/// Where a comparison is not decided on the cell, or a kink may lie in it, the result encloses all cases, and
+/// `undecided` is what changes its sign there: to cut the cell where it is 0 decides it.
+template <typename Value>
+class Enclosure {
+ public:
+  Value x, y, nx, ny;
+  std::optional<Value> undecided = std::nullopt;
+
+  Value operator()(const Formula::Instruction& step) const {
+    switch (step.operation) {
+      case Operation::x:
+        return x;
+      case Operation::y:
+        return y;
+      case Operation::nx:
+        return nx;
+      case Operation::ny:
+        return ny;
+      default:
+        return constant(step.constant);
+    }
+  }
+
+  Value operator()(Operation operation, const Value& a) {
+    switch (operation) {
+      case Operation::abs:
+        switch (sign_of(a, 0)) {
+          case Sign::positive:
+            return a;
+          case Sign::negative:
+            return smooth(Operation::negate, a);
+          case Sign::zero:
+            return constant(0);
+          default:
+            return rough_like(a, boost::numeric::abs(range(a)));
+        }
+      case Operation::sign:
+        return stepped(sign_of(a, 0), -1, 0, 1);
+      case Operation::rint:
+        return rounded(a);
+      default:
+        return smooth(operation, a);
+    }
+  }
+
+  Value operator()(Operation operation, const Value& a, const Value& b) {
+    switch (operation) {
+      case Operation::min:
+      case Operation::max:
+        return extreme(a, b, operation == Operation::min);
+      case Operation::less:
+        return stepped(sign_of_difference(a, b), 1, 0, 0);
+      case Operation::less_equal:
+        return stepped(sign_of_difference(a, b), 1, 1, 0);
+      case Operation::greater:
+        return stepped(sign_of_difference(a, b), 0, 0, 1);
+      case Operation::greater_equal:
+        return stepped(sign_of_difference(a, b), 0, 1, 1);
+      case Operation::equal:
+        return stepped(sign_of_difference(a, b), 0, 1, 0);
+      case Operation::unequal:
+        return stepped(sign_of_difference(a, b), 1, 0, 1);
+      case Operation::both:
+        return both(a, b);
+      case Operation::either:
+        return smooth(Operation::subtract, constant(1), both(inverted(a), inverted(b)));
+      default:
+        return smooth(operation, a, b);
+    }
+  }
+
+  Value operator()(Operation, const Value& condition, const Value& a, const Value& b) const {
+    if (is_true(condition)) return a;
+    return is_false(condition) ? b : hull(a, b);
+  }
+
+ private:
+  enum class Sign { negative, zero, positive, unknown };
+
+  Value constant(double value) const { return constant_like(x, value); }
+
+  static bool is_true(const Value& a) { return range(a).lower() > 0 || range(a).upper() < 0; }
+  static bool is_false(const Value& a) { return range(a).lower() == 0 && range(a).upper() == 0; }
+
+  /// `scale`: of the numbers whose difference a is.
+  Sign sign_of(const Value& a, double scale) {
+    const Interval& values = range(a);
+    const double rounding = kEnclosureRounding * std::max(scale, largest(values));
+    if (largest(values) <= kEnclosureRounding * scale) return Sign::zero;
+    if (values.lower() >= -rounding) return Sign::positive;
+    if (values.upper() <= rounding) return Sign::negative;
+    if (!undecided) undecided = a;
+    return Sign::unknown;
+  }
+
+  Sign sign_of_difference(const Value& a, const Value& b) {
+    return sign_of(smooth(Operation::subtract, a, b), largest(range(a)) + largest(range(b)));
+  }
+
+  Value stepped(Sign sign, double below, double at, double above) const {
+    if (sign == Sign::unknown) return rough_like(x, Interval(std::min(below, above), std::max(below, above)));
+    return constant(sign == Sign::negative ? below : (sign == Sign::zero ? at : above));
+  }
+
+  Value extreme(const Value& a, const Value& b, bool least) {
+    switch (sign_of_difference(a, b)) {
+      case Sign::negative:
+        return least ? a : b;
+      case Sign::unknown: {
+        const Interval &p = range(a), &q = range(b);
+        return rough_like(x, least ? boost::numeric::min(p, q) : boost::numeric::max(p, q));
+      }
+      default:
+        return least ? b : a;
+    }
+  }
+
+  /// The next whole number, upwards half-way.
+  Value rounded(const Value& a) {
+    const Interval& values = range(a);
+    const double low = std::floor(values.lower() + 0.5), high = std::floor(values.upper() + 0.5);
+    if (low == high) return constant(low);
+    if (!is_known(values)) return rough_like(x, kAnything);
+    const Sign sign = sign_of_difference(a, constant(high - 0.5));
+    if (sign == Sign::positive) return constant(high);
+    if (sign == Sign::negative && high == low + 1) return constant(low);
+    return rough_like(x, Interval(low, high));
+  }
+
+  Value both(const Value& a, const Value& b) const {
+    if (is_false(a) || is_false(b)) return constant(0);
+    if (is_true(a) && is_true(b)) return constant(1);
+    return rough_like(x, Interval(0, 1));
+  }
+
+  Value inverted(const Value& a) const {
+    if (is_true(a)) return constant(0);
+    return is_false(a) ? constant(1) : rough_like(x, Interval(0, 1));
+  }
+};
+
+}  // namespace signorini

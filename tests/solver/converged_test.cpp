@@ -1,0 +1,95 @@
+// What `converged` promises: the residuals that are recomputed from the fields are met.
+#include <gtest/gtest.h>
+
+#include "problems/elasticity.hpp"
+#include "problems/membrane.hpp"
+#include "solve.hpp"
+
+namespace signorini {
+namespace {
+
+double largest_contact_residual(const Residuals& left) {
+  return std::max({left.penetration, left.tension, left.complementarity});
+}
+
+/// Rounding of what S does not know.
+constexpr double kSame = 1 + 1e-4, kRounding = 1e-12;
+
+void expect_met(const Problem& problem, const std::string& which) {
+  for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
+    const Summary summary = solve(problem, {AcceleratedUzawa{tolerance}, {}}).summary;
+    EXPECT_EQ(summary.outcome, Outcome::converged) << which << ", " << tolerance;
+    EXPECT_LE(largest_contact_residual(summary.residuals), kSame * tolerance + kRounding)
+        << which << ", " << tolerance;
+  }
+  const Summary exact = solve(problem, {ActiveSet{}, {}}).summary;
+  EXPECT_EQ(exact.outcome, Outcome::converged) << which;
+  EXPECT_LE(largest_contact_residual(exact.residuals), kRounding) << which;
+}
+
+/// A block that is held at its left side and pulled to the right, away from what is below it, over gaps that
+/// it never closes; `unit` scales lengths.
+Problem free_block(Scheme scheme, double gap, double unit) {
+  Problem problem = problems::block(scheme, Pattern::right, 3, 0.3);
+  problem.domain = Rectangle{{0, 0}, {2 * unit, unit}};
+  problem.boundary = {{"left", Fixed{VectorField(0, 0)}},
+                      {"bottom", Contact{gap * unit}},
+                      {"right", Traction{VectorField(0.3, 0.02)}}};
+  return problem;
+}
+
+TEST(Converged, MeansThatTheResidualsAreMetWhereNothingTouches) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double gap : {1., 10., 100.})
+      for (const double unit : {1e-9, 1., 1e9})
+        expect_met(free_block(scheme, gap, unit),
+                   "gap " + std::to_string(gap) + ", unit " + std::to_string(unit));
+}
+
+TEST(Converged, MeansThatTheResidualsAreMetWhereContactIsTinyBesideTheLoad) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double push : {1e-3, 1e-6, 1e-9}) {
+      Problem problem = problems::block(scheme, Pattern::right, 3, 0.3);
+      problem.boundary = {{"left", Fixed{VectorField(0, 0)}},
+                          {"right", Contact{problems::function([&](const Point&) { return -push; })}},
+                          {"top", Traction{VectorField(0, 0.1)}},
+                          {"bottom", Traction{VectorField(0, -0.1)}}};
+      expect_met(problem, "push " + std::to_string(push));
+    }
+}
+
+TEST(Converged, MeansThatTheResidualsAreMetOnRandomProblems) {
+  for (unsigned seed = 1; seed < 21; ++seed)
+    expect_met(problems::random(seed), "seed " + std::to_string(seed));
+}
+
+/// The first step with a tiny rho hardly moves the displacement, which is all that the paper's criterion
+/// sees.
+TEST(Stalled, IsThePapersFormWithStepsThatGetNowhere) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const auto& [rho, augmentation] :
+         {std::pair(1e-6, 1.), std::pair(1e-3, 100.), std::pair(1e-6, 1e6), std::pair(1., 1e6)})
+      for (const double modulus : {1e-9, 1., 1e9}) {
+        Problem problem = problems::paper(scheme, 12);
+        problem.material = MembraneStiffness::isotropic(Field(modulus));
+        problem.body = problems::function([=](const Point& x) { return (x.x() < 0.5 ? 10 : -10) * modulus; });
+        const Solution solution =
+            solve(problem, {PaperUzawa{rho / modulus, augmentation / modulus, 1, 1e-5, 1000}, {}});
+        EXPECT_EQ(solution.summary.outcome, Outcome::stalled) << rho << ' ' << augmentation << ' ' << modulus;
+        EXPECT_NE(solution.summary.advice.find("rho"), std::string::npos);
+        EXPECT_TRUE(solution.stress.allFinite());
+        EXPECT_FALSE(solution.history.empty());
+      }
+}
+
+TEST(Stalled, IsNotThePapersFormThatGetsThere) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-8, 1e-14}) {
+      const PaperUzawa method{scheme == Scheme::conforming ? 0.05 : 0.1, 1, 1, tolerance, 100000};
+      EXPECT_EQ(solve(problems::paper(scheme, 12), {method, {}}).summary.outcome, Outcome::converged)
+          << tolerance;
+    }
+}
+
+}  // namespace
+}  // namespace signorini

@@ -1,0 +1,176 @@
+// Polygons that leave a mesh little room: each gets one soon, or a word that names the place.
+#include "mesh/narrow_places.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numbers>
+#include <random>
+
+#include "mesh/polygon.hpp"
+#include "mesh_quality.hpp"
+
+namespace signorini {
+namespace {
+
+const std::vector<Point> kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+
+/// A hole with a side along the edge of the square, at a distance.
+Polygon beside(double distance) {
+  return {kSquare, {{{0.3, distance}, {0.6, distance}, {0.6, 0.5}, {0.3, 0.5}}}, {}};
+}
+
+/// A hole with a corner that comes so close.
+Polygon pointed(double distance) {
+  return {kSquare, {{{0.5, distance}, {0.6, 0.2}, {0.5, 0.4}, {0.4, 0.2}}}, {}};
+}
+
+Polygon wedge(double degrees) {
+  const double angle = degrees * std::numbers::pi / 180;
+  return {{{0, 0}, {1, 0}, {std::cos(angle), std::sin(angle)}}, {}, {}};
+}
+
+Polygon strip(double aspect) {
+  return {{{0, 0}, {aspect, 0}, {aspect, 1}, {0, 1}}, {}, {}};
+}
+
+/// A band of a height that goes up and down between its ends.
+Polygon zigzag(int teeth, double height) {
+  Polygon polygon;
+  for (int i = 0; i <= teeth; ++i) polygon.vertices.push_back({1. * i / teeth, i % 2});
+  for (int i = teeth; i >= 0; --i) polygon.vertices.push_back({1. * i / teeth, i % 2 - height});
+  return polygon;
+}
+
+/// A slit in the domain, which needs no triangles.
+Polygon slit(double width) {
+  return {
+      {{0, 0}, {1, 0}, {1, 1}, {0.5 + width, 1}, {0.5 + width, 0.2}, {0.5, 0.2}, {0.5, 1}, {0, 1}}, {}, {}};
+}
+
+Polygon scaled(Polygon polygon, double scale) {
+  for (Point& x : polygon.vertices) x *= scale;
+  for (auto& hole : polygon.holes)
+    for (Point& x : hole) x *= scale;
+  return polygon;
+}
+
+double counted(const Polygon& polygon) {
+  const Rings rings(polygon);
+  return narrow_places(rings.within(UnitFrame(rings.points)), 1e6).triangles;
+}
+
+double seconds_of(const auto& act) {
+  const auto start = std::chrono::steady_clock::now();
+  act();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+TEST(NarrowPlaces, AreCountedAsTheMesherCuts) {
+  for (const Polygon& polygon : {beside(1e-3), beside(1e-4), wedge(1), wedge(0.1), wedge(0.01), strip(100),
+                                 strip(5000), zigzag(20, 0.01), zigzag(30, 0.01)}) {
+    const auto triangles =
+        static_cast<double>(polygon_mesh(polygon, 1e5 * polygon.vertices[1].x()).triangles.size());
+    EXPECT_LT(counted(polygon), 3 * triangles);
+    EXPECT_GT(counted(polygon), triangles / 4);
+  }
+}
+
+TEST(NarrowPlaces, CornersAndSlitsNeedFewTriangles) {
+  for (const double distance : {1e-2, 1e-5, 1e-8}) {
+    EXPECT_LT(counted(pointed(distance)), 200);
+    EXPECT_LT(counted(slit(distance)), 50);
+    EXPECT_LT(polygon_mesh(pointed(distance), 0.25).triangles.size(), 1000u);
+  }
+}
+
+TEST(NarrowPlaces, RefuseATooNarrowDomainAtOnceAndSayWhere) {
+  for (const double scale : {1., 1e-9, 1e9})
+    for (const auto& [polygon, pointer] :
+         {std::pair(beside(1e-7), "/domain/vertices/0"), std::pair(wedge(1e-5), "/domain/vertices/0"),
+          std::pair(strip(1e7), "/domain/vertices/0"), std::pair(zigzag(400, 1e-3), "/domain/vertices/0")}) {
+      std::vector<Fault> faults;
+      EXPECT_LT(seconds_of([&] { faults = validate(scaled(polygon, scale)); }), 1);
+      ASSERT_EQ(faults.size(), 1u);
+      EXPECT_EQ(faults[0].where.substr(0, 17), std::string(pointer).substr(0, 17));
+      EXPECT_NE(faults[0].detail.find("more than 300,000 triangles"), std::string::npos);
+      EXPECT_NE(faults[0].detail.find("that begins at /domain/"), std::string::npos);
+    }
+  const std::vector<Fault> named = validate(beside(1e-7));
+  EXPECT_EQ(named[0].where, "/domain/vertices/0");
+  EXPECT_NE(named[0].detail.find("(0, 0) to (1, 0)"), std::string::npos);
+  EXPECT_NE(named[0].detail.find("begins at /domain/holes/0/0"), std::string::npos);
+}
+
+TEST(NarrowPlaces, AreFoundSoonAmongManyEdges) {
+  Polygon disc, comb;
+  for (int i = 0; i < 50'000; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 50'000;
+    disc.vertices.push_back({std::cos(angle), std::sin(angle)});
+  }
+  comb = zigzag(20'000, 1e-6);
+  double found = 0;
+  EXPECT_LT(seconds_of([&] { found = counted(disc); }), 2);
+  EXPECT_EQ(found, 0);
+  EXPECT_LT(seconds_of([&] { found = counted(comb); }), 4);
+  EXPECT_GT(found, 1e6);
+}
+
+/// A star-shaped ring of a random shape, spiky at times.
+std::vector<Point> random_ring(std::mt19937& random, int vertices, const Point& centre, double radius) {
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+  const double inner = std::pow(10., between(-4, 0));
+  std::vector<Point> ring;
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * (i + between(0, 0.9)) / vertices;
+    const double r = radius * (random() % 2 == 0 ? 1 : between(inner, 1));
+    ring.push_back(centre + r * Vector(std::cos(angle), std::sin(angle)));
+  }
+  return ring;
+}
+
+TEST(NarrowPlaces, EveryRandomPolygonEndsSoon) {
+  std::mt19937 random(11);
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
+  int meshed = 0, refused = 0;
+  for (int trial = 0; trial < 80; ++trial) {
+    Polygon polygon;
+    switch (trial % 4) {
+      case 0:
+        polygon = wedge(std::pow(10., between(-6, 1.7)));
+        break;
+      case 1:
+        polygon = trial % 8 == 1 ? beside(std::pow(10., between(-8, -0.4)))
+                                 : pointed(std::pow(10., between(-8, -1)));
+        break;
+      case 2:
+        polygon = zigzag(2 + static_cast<int>(random() % 98), std::pow(10., between(-6, 0)));
+        break;
+      default:
+        polygon.vertices = random_ring(random, 3 + static_cast<int>(random() % 198), {0, 0}, 1);
+    }
+    polygon = scaled(polygon, std::pow(10., between(-6, 6)));
+    double extent = 0;
+    for (const Point& x : polygon.vertices) extent = std::max(extent, x.cwiseAbs().maxCoeff());
+    const double seconds = seconds_of([&] {
+      try {
+        const Mesh mesh = polygon_mesh(polygon, 0.3 * extent);
+        EXPECT_LT(mesh.triangles.size(), 1e6) << trial;
+        EXPECT_NEAR(mesh.area(), area(polygon), 1e-9 * extent * extent) << trial;
+        EXPECT_GT(smallest_angle(mesh), 0) << trial;
+        ++meshed;
+      } catch (const InvalidProblem& invalid) {
+        EXPECT_EQ(invalid.faults()[0].where.substr(0, 7), "/domain") << invalid.what();
+        EXPECT_FALSE(invalid.faults()[0].detail.empty());
+        ++refused;
+      }
+    });
+    EXPECT_LT(seconds, 30) << trial;
+  }
+  std::printf("random polygons: %d meshed, %d refused\n", meshed, refused);
+  EXPECT_GT(meshed, 40);
+  EXPECT_GT(refused, 5);
+}
+
+}  // namespace
+}  // namespace signorini
