@@ -1,11 +1,39 @@
 #include "condensed_problem.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "certify/certificate.hpp"
 #include "contact/accelerated_uzawa.hpp"
 #include "contact/complete.hpp"
 #include "contact/rigid_motions.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
+
+namespace {
+
+/// How far a foundation may be, in displacements, before it is drawn near; and how far it is then.
+constexpr double kFar = 1e4, kNear = 1e3;
+
+/// The reach that the gaps should have beside the displacement; infinite if they are near already.
+double reach_for(const ClearanceSpace& space, const Fields& fields) {
+  const double displacement = fields.displacement.lpNorm<Eigen::Infinity>();
+  const bool is_far = std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
+    return row.unknown >= 0 && fields.clearance[row.unknown] > 0 && row.gap > kFar * displacement;
+  });
+  return is_far && displacement > 0 ? kNear * displacement : std::numeric_limits<double>::infinity();
+}
+
+/// A foundation was drawn so near that something touches it.
+bool touches_beyond(const ClearanceSpace& space, const Eigen::VectorXd& clearance) {
+  return std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
+    return row.unknown >= 0 && row.beyond > 0 && clearance[row.unknown] <= 0;
+  });
+}
+
+}  // namespace
 
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const MeanStress& mean_stress, const Eigen::VectorXd& start) {
@@ -17,7 +45,7 @@ ContactResult find_clearance(const ContactComplement& contact, const Method& met
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,
                                    Progress& progress)
-    : reused_(false), discretization_(std::make_unique<const Discretization>(problem, *mesh)) {
+    : reused_(false), discretization_(std::make_unique<Discretization>(problem, *mesh)) {
   const bool held = held_by_contact_alone(*discretization_);
   progress.enter(Phase::assemble);
   const HybridSystem system = assemble(*discretization_, progress);
@@ -31,16 +59,38 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
                                    Progress& progress)
     : operator_(std::move(kept)), reused_(true) {
   progress.enter(Phase::assemble);
-  discretization_ = std::make_unique<const Discretization>(problem, operator_->mesh());
+  discretization_ = std::make_unique<Discretization>(problem, operator_->mesh());
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
   condensed_ =
       std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
 }
 
-Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start) {
-  progress.enter(Phase::iterate);
+/// Poses the problem again with another reach of its gaps.
+void CondensedProblem::pose(double reach, Progress& progress) {
+  discretization_->draw_near(reach);
+  condensed_ =
+      std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
+}
+
+Fields CondensedProblem::find(const Method& method, Progress& progress, const Eigen::VectorXd& start) {
+  Fields fields = find_as_posed(method, progress, start);
+  // Beside the largest gaps the first displacement may be but noise; each pose has ten digits less of it.
+  for (int most = 4; most > 0; --most) {
+    const double reach = reach_for(discretization_->clearance, fields);
+    if (!std::isfinite(reach)) return fields;
+    pose(reach, progress);
+    progress.take_history();
+    fields = find_as_posed(method, progress, fields.clearance.cwiseMin(reach));
+    if (touches_beyond(discretization_->clearance, fields.clearance)) break;
+  }
+  if (!touches_beyond(discretization_->clearance, fields.clearance)) return fields;
+  pose(std::numeric_limits<double>::infinity(), progress);
+  return find_as_posed(method, progress, {});
+}
+
+Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start) {
   // The Uzawa iteration leaves its clearances where its tolerance ended it.
-  const bool exact = std::holds_alternative<ActiveSet>(settings.method);
+  const bool exact = std::holds_alternative<ActiveSet>(method);
   Completed all;
   Eigen::VectorXd completed;
   const auto complete_for = [&](const Eigen::VectorXd& clearance) {
@@ -53,13 +103,20 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
     complete_for(clearance);
     return mean_stress(*discretization_, all.fields.stress, all.fields.displacement);
   };
-  const ContactResult found = find_clearance(contact(), settings.method, progress, mean_stress_for, start);
+  const ContactResult found = find_clearance(contact(), method, progress, mean_stress_for, start);
   if (completed.size() == 0 || completed != found.clearance) complete_for(found.clearance);
-  Fields fields{std::move(all.fields.stress), std::move(all.fields.displacement),
-                all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling),
-                found.outcome};
-  Solution solution = summarize(*discretization_, std::move(fields), settings, progress);
+  return {std::move(all.fields.stress), std::move(all.fields.displacement),
+          all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
+}
+
+Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start) {
+  progress.enter(Phase::iterate);
+  const Fields fields = find(settings.method, progress, start);
+  Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
+  progress.enter(Phase::certify);
+  add_bound(discretization_->problem, certify(*discretization_, solution, fields.coupling, progress), solution,
+            progress);
   return solution;
 }
 

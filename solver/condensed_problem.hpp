@@ -30,12 +30,19 @@ class CondensedProblem {
 
   /// Finds the clearances, beginning as find_clearance() does, and from them all fields. The method is one on
   /// the contact complement, not the paper's form.
+  /// A foundation so far away that its gap would drown the displacement is drawn near.
+  Fields find(const Method& method, Progress& progress, const Eigen::VectorXd& start = {});
+
+  /// The same with all that the fields tell, error bound included.
   Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {});
 
  private:
+  Fields find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start);
+  void pose(double reach, Progress& progress);
+
   std::shared_ptr<const Operator> operator_;
   bool reused_;
-  std::unique_ptr<const Discretization> discretization_;
+  std::unique_ptr<Discretization> discretization_;
   std::unique_ptr<CondensedContact> condensed_;
 };
 

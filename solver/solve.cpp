@@ -2,31 +2,12 @@
 
 #include "adapt.hpp"
 #include "condensed_problem.hpp"
-#include "contact/paper_uzawa.hpp"
-#include "contact/rigid_motions.hpp"
+#include "paper_form.hpp"
 #include "requested_mesh.hpp"
 #include "sweep.hpp"
 
 namespace signorini {
 namespace {
-
-Solution iterate(const Discretization& problem, const PaperUzawa& method, const Settings& settings,
-                 Progress& progress) {
-  held_by_contact_alone(problem);
-  progress.enter(Phase::assemble);
-  UzawaIteration iteration(problem, method, progress);
-  progress.enter(Phase::iterate);
-  const Outcome outcome = iteration.run(progress);
-  progress.found();
-  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
-                outcome};
-  return summarize(problem, std::move(fields), settings, progress);
-}
-
-Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
-  const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  return iterate(Discretization(problem, *mesh), std::get<PaperUzawa>(settings.method), settings, progress);
-}
 
 /// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
 template <typename SolveOne>
@@ -80,7 +61,7 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
   Problem varied = problem;
   sweep_over(sweep, settings, observer, progress, solution, [&](const Variation& variation, Progress& own) {
     apply(variation, varied);
-    return entry_of(solve_paper_form(varied, settings, own));
+    return entry_of(iterate_paper_form(varied, settings, own));
   });
   return solution;
 }

@@ -18,6 +18,7 @@
 #include "fem/reconstruct.hpp"
 #include "flux_functional.hpp"
 #include "outcome.hpp"
+#include "strain_notes.hpp"
 
 namespace signorini {
 namespace {
@@ -86,9 +87,9 @@ std::vector<ContactPart> contact_parts(const ClearanceSpace& space, const Mesh& 
     if (row.part != last) parts.push_back({mesh.boundary[last = row.part].name, {}, {}, {}, {}, {}, {}});
     ContactPart& part = parts.back();
     part.points.push_back(row.point);
-    part.clearance.push_back(clearance[i]);
+    part.clearance.push_back(clearance[i] + row.beyond);
     part.pressure.push_back(pressure[i]);
-    part.gap.push_back(row.gap);
+    part.gap.push_back(row.gap + row.beyond);
     part.weight.push_back(row.weight);
     part.open.push_back(clearance[i] > 0);
   }
@@ -168,18 +169,17 @@ Unknowns count_unknowns(const Discretization& problem) {
 
 /// Below this a bound is rounding, as of a body that is displaced without stress: in the same unit the norm
 /// of strains so small that the displacements have hardly a digit for them.
-double rounding_of_bound(const Discretization& problem, const Solution& solution) {
+double rounding_of_bound(const Problem& problem, const Solution& solution) {
   double compliance = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < problem.triangles(); ++t) {
-    const auto c = compliance_at(problem.problem.material, problem.mesh.centroid(t));
+  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
+    const auto c = compliance_at(problem.material, solution.mesh.centroid(t));
     compliance = std::min(compliance, c.diagonal().minCoeff());
   }
   return 1e-11 * solution.displacement.lpNorm<Eigen::Infinity>() / std::sqrt(compliance);
 }
 
 /// What must be known before the numbers are used, and what would make them better.
-std::vector<std::string> warnings(const Discretization& problem, const Solution& solution,
-                                  const ErrorBound& bound) {
+std::vector<std::string> warnings(const Problem& problem, const Solution& solution, const ErrorBound& bound) {
   if (bound.relative <= 1 || bound.value <= rounding_of_bound(problem, solution)) return {};
   const bool converged = solution.summary.outcome == Outcome::converged;
   std::ostringstream relative;
@@ -218,15 +218,14 @@ Timings timings(const Progress& progress) {
           progress.seconds_in(Phase::certify),   progress.seconds()};
 }
 
-Solution summarize(const Discretization& problem, Fields fields, const Settings& settings,
-                   Progress& progress) {
+Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress) {
   Solution solution;
   Summary& summary = solution.summary;
   solution.scheme = problem.problem.scheme;
   solution.mesh = problem.mesh;
   solution.components = problem.spaces().components;
-  solution.stress = std::move(fields.stress);
-  solution.displacement = std::move(fields.displacement);
+  solution.stress = fields.stress;
+  solution.displacement = fields.displacement;
   solution.rotation = problem.traces.rotation(fields.coupling);
   progress.check();
   summary.energy = energy(problem, solution);
@@ -248,22 +247,26 @@ Solution summarize(const Discretization& problem, Fields fields, const Settings&
   summary.method = std::holds_alternative<ActiveSet>(settings.method) ? "active_set" : "uzawa";
   summary.notes = problem.mesh.notes;
   std::ranges::move(notes_on_curves(problem, clearance), std::back_inserter(summary.notes));
+  std::ranges::move(notes_on_strains(solution), std::back_inserter(summary.notes));
   summary.triangles = problem.triangles();
   summary.unknowns = count_unknowns(problem);
   summary.contact = sum_up(solution.contact);
-  progress.enter(Phase::certify);
-  Certificate certificate = certify(problem, solution, fields.coupling, progress);
-  if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
-    std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(summary.notes));
-    summary.error_bound = std::move(certificate.bound);
-    solution.error_squares = std::move(certificate.squares);
-    solution.admissible_pressure = std::move(certificate.pressure);
-  }
   summary.timings = timings(progress);
   summary.peak_memory_bytes = peak_memory_bytes();
   solution.history = progress.take_history();
   refuse_overflow(solution);
   return solution;
+}
+
+void add_bound(const Problem& problem, Certificate certificate, Solution& solution, const Progress& progress) {
+  if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
+    std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(solution.summary.notes));
+    solution.summary.error_bound = std::move(certificate.bound);
+    solution.error_squares = std::move(certificate.squares);
+    solution.admissible_pressure = std::move(certificate.pressure);
+  }
+  solution.summary.timings = timings(progress);
+  solution.summary.peak_memory_bytes = peak_memory_bytes();
 }
 
 }  // namespace signorini

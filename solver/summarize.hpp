@@ -1,5 +1,6 @@
 #pragma once
 
+#include "certify/certificate.hpp"
 #include "fem/discretization.hpp"
 #include "problem/settings.hpp"
 #include "progress.hpp"
@@ -32,9 +33,11 @@ ContactSummary sum_up(const std::vector<ContactPart>& parts);
 /// From the values of the part's reactions_on().
 Reaction make_reaction(std::string part, const std::vector<double>& values);
 
-/// Everything that a solution tells beyond the fields, computed from the fields alone: contact pressures,
-/// residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
-Solution summarize(const Discretization& problem, Fields fields, const Settings& settings,
-                   Progress& progress);
+/// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone: contact
+/// pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
+Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress);
+
+/// Adds the error bound, if its numbers are finite, and what must be said about it.
+void add_bound(const Problem& problem, Certificate certificate, Solution& solution, const Progress& progress);
 
 }  // namespace signorini

@@ -1,5 +1,6 @@
 #include "sweep.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -50,6 +51,12 @@ Eigen::VectorXd of_unknowns(const ClearanceSpace& space, const Eigen::VectorXd& 
   return unknowns;
 }
 
+Eigen::VectorXd beyond(const ClearanceSpace& space) {
+  Eigen::VectorXd all(space.rows.size());
+  std::ranges::transform(space.rows, all.begin(), &ClearanceRow::beyond);
+  return all;
+}
+
 /// The clearances of a solution, an entry a row.
 Eigen::VectorXd clearances(const std::vector<ContactPart>& parts) {
   std::vector<double> all;
@@ -74,7 +81,7 @@ class Sweep::Reference {
             Progress& progress)
       : problem_(std::move(posed)), condensed_(problem_, kept, progress), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
-    clearance_ = of_unknowns(space(), clearances(solution.contact));
+    clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement);
     observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));

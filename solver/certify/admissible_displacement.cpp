@@ -16,6 +16,8 @@ namespace {
 
 /// Below this part of the displacement a difference is rounding.
 constexpr double kSmall = 1e-12;
+/// So many times the largest displacement is out of reach.
+constexpr double kReach = 1e3;
 
 Eigen::VectorXd value_of(const VectorField& field, int components, const Point& x, const Vector& normal) {
   Eigen::VectorXd value(components);
@@ -86,6 +88,7 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
       clearance_(problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()))),
       points_(displacement_at_corners(problem, solution)),
       scale_(points_.cwiseAbs().maxCoeff()) {
+  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i) clearance_[i] += problem.clearance.rows[i].beyond;
   constrain_points();
   set_middles(coupling);
   for (const BoundaryPart& part : problem.mesh.boundary) {
@@ -239,7 +242,8 @@ void AdmissibleDisplacement::constrain_points() {
   for (const ContactEdge& contact : problem_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
-      scale_ = std::max(scale_, std::abs(g));
+      // A gap that is out of reach rounds nothing that matters.
+      if (std::abs(g) < kReach * scale_) scale_ = std::max(scale_, std::abs(g));
       const bool touches = clearance_[contact.rows[k]] <= 0;
       constrain(mesh.edges[contact.edge][k], {direction(contact), g, touches});
     }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "certify/carried_loads.hpp"
+#include "certify/energy_norm.hpp"
 #include "certify/least_airy.hpp"
 #include "certify/least_potential.hpp"
 #include "certify/patch_pairs.hpp"
@@ -103,6 +104,19 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
   return certificate;
+}
+
+void move_to(const Eigen::MatrixXd& stress, const Discretization& problem, const Solution& solution,
+             Certificate& certificate, Progress& progress) {
+  const LawOnMesh laws(problem.problem.material, problem.mesh, progress);
+  const Eigen::VectorXd way = energy_norm_squares(problem, stress - solution.stress, laws, progress);
+  const double distance = std::sqrt(way.sum()),
+               size = std::sqrt(energy_norm_squares(problem, stress, laws, progress).sum());
+  ErrorBound& bound = certificate.bound;
+  bound.value += distance;
+  bound.parts.equilibration += distance;
+  bound.relative = size > 0 ? bound.value / size : (bound.value > 0 ? 1 : 0);
+  certificate.squares += way;
 }
 
 }  // namespace signorini

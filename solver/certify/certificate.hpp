@@ -28,4 +28,9 @@ struct Certificate {
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
                     Progress& progress);
 
+/// Makes the bound of a solution one of another stress τ of the same spaces, such as an iterate:
+/// ‖σ − τ‖_C ≤ ‖σ − σ_h‖_C + ‖σ_h − τ‖_C. The energies stay, those of the pair (σ*, v).
+void move_to(const Eigen::MatrixXd& stress, const Discretization& problem, const Solution& solution,
+             Certificate& certificate, Progress& progress);
+
 }  // namespace signorini

@@ -122,6 +122,8 @@ AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, con
     for (std::size_t node = 0; node <= chain_.size(); ++node) move_at_node(node, clearance, transition);
   carry_deficits();
   for (Link& link : chain_) spread(link);
+  if (std::ranges::all_of(chain_, [this](const Link& link) { return is_far(link); }))
+    for (Link& link : chain_) link.forces = {0, 0};
 }
 
 bool AdmissibleChain::is_held(bool at_end) const {
@@ -140,6 +142,12 @@ void AdmissibleChain::move(std::size_t node, double force) {
 
 bool AdmissibleChain::is_open(std::size_t link, const Eigen::VectorXd& clearance) const {
   return clearance[chain_[link].rows[0]] > 0 || clearance[chain_[link].rows[1]] > 0;
+}
+
+/// Its foundation was drawn near: rounding that pushes there would count with the whole of the true gap.
+bool AdmissibleChain::is_far(const Link& link) const {
+  const auto& rows = problem_.clearance.rows;
+  return rows[link.rows[0]].beyond > 0 && rows[link.rows[1]].beyond > 0;
 }
 
 /// The force on the hat of a node is not negative, and 0 if the node is open; neither of its edges is left
@@ -163,9 +171,9 @@ void AdmissibleChain::move_at_node(std::size_t node, const Eigen::VectorXd& clea
 /// What is still negative, from the tolerance of an iteration, is carried along the chain.
 void AdmissibleChain::carry_deficits() {
   for (std::size_t i = 0; i + 1 < chain_.size(); ++i)
-    if (chain_[i].force() < 0) carry(i, i + 1);
+    if (chain_[i].force() < 0 || is_far(chain_[i])) carry(i, i + 1);
   for (std::size_t i = chain_.size(); i-- > 1;)
-    if (chain_[i].force() < 0) carry(i, i - 1);
+    if (chain_[i].force() < 0 || is_far(chain_[i])) carry(i, i - 1);
 }
 
 /// Leaves the one edge with no force.

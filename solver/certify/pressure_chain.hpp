@@ -62,6 +62,7 @@ class AdmissibleChain {
   void carry(std::size_t from, std::size_t to);
   void spread(Link& link) const;
   bool is_open(std::size_t link, const Eigen::VectorXd& clearance) const;
+  bool is_far(const Link& link) const;
 
   const Discretization& problem_;
   Chain chain_;

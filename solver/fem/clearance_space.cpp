@@ -42,8 +42,9 @@ struct HeldPoints {
 
 class Builder {
  public:
-  Builder(const Problem& problem, const Mesh& mesh)
+  Builder(const Problem& problem, const Mesh& mesh, double reach)
       : mesh_(mesh),
+        reach_(reach),
         components_(components(problem.material)),
         order_(spaces_of(problem.scheme, components_).order),
         held_(problem, mesh) {
@@ -89,10 +90,11 @@ class Builder {
   void add_edge(int part, int edge, const std::array<int, 2>& way, const Contact& condition) {
     const auto [a, b] = mesh_.edges[edge];
     const Point from = mesh_.points[a], to = mesh_.points[b];
-    const auto gap = [&](double s) {
+    const auto true_gap = [&](double s) {
       const auto [x, normal] = mesh_.on_boundary(edge, s);
       return condition.gap(x, normal);
     };
+    const auto gap = [&](double s) { return std::min(true_gap(s), reach_); };
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
     ContactEdge contact{edge, {}, {}, straightened(direction_on(part, condition, edge), way)};
     if (order_ == 0)
@@ -100,6 +102,8 @@ class Builder {
     else
       for (const int node : way)
         contact.rows[node == a ? 0 : 1] = row_of_node(part, node, gap(node == a ? 0 : 1), contact.direction);
+    for (int j = 0; j <= order_; ++j)
+      space_.rows[contact.rows[j]].beyond = std::max(0., true_gap(order_ == 0 ? 0.5 : j) - reach_);
     for (int j = 0; j <= order_; ++j) {
       contact.gap[j] = projection[j];
       space_.rows[contact.rows[j]].weight += mesh_.length(edge) / (order_ + 1);
@@ -151,6 +155,7 @@ class Builder {
   }
 
   const Mesh& mesh_;
+  const double reach_;
   const int components_;
   const int order_;
   const HeldPoints held_;
@@ -173,8 +178,8 @@ Eigen::VectorXd ClearanceSpace::clearance(const Eigen::VectorXd& unknown) const 
   return all;
 }
 
-ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh) {
-  Builder builder(problem, mesh);
+ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh, double reach) {
+  Builder builder(problem, mesh, reach);
   for (int part = 0; part < static_cast<int>(mesh.boundary.size()); ++part)
     if (const auto* contact = condition_on<Contact>(problem, mesh.boundary[part].name))
       builder.add_part(part, *contact);

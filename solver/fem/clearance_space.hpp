@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "fem/scheme.hpp"
@@ -22,6 +23,7 @@ struct ClearanceRow {
   double weight = 0;  ///< <1, φ_i>, a length
   int unknown = -1;   ///< number among the contact unknowns; -1 at a node shared with Γ_D
   double datum = 0;   ///< λ = g − u_D·n at a node shared with Γ_D
+  double beyond = 0;  ///< what g and λ are larger by in truth, if the foundation was drawn near
 };
 
 /// One edge of Γ_C: its local trace functions j (from its first to its second point) carry
@@ -58,6 +60,10 @@ struct ClearanceSpace {
 
 /// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a node that a contact part shares with a
 /// fixed part is fixed beyond the gap: no displacement meets both.
-ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh);
+///
+/// `reach`: the largest gap that the space has. A foundation that is farther away is drawn near: as long as nothing
+/// touches it there, the displacement is the same, and it keeps the digits that it would lose beside a large gap.
+ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh,
+                                    double reach = std::numeric_limits<double>::infinity());
 
 }  // namespace signorini

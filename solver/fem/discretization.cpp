@@ -19,6 +19,11 @@ Discretization::Discretization(const Problem& posed, const Mesh& given)
   take_up_traction();
 }
 
+void Discretization::draw_near(double reach) {
+  clearance = make_clearance_space(problem, mesh, reach);
+  traces.meet(clearance);
+}
+
 /// Half of a couple acts on the rotation at each end of an edge, a third at each corner of a triangle: γ is
 /// linear, and the rotation of the displacement is −γ.
 void Discretization::take_up_body_load() {

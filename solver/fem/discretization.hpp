@@ -18,6 +18,9 @@ struct Discretization {
   Discretization(const Discretization&) = delete;
   Discretization& operator=(const Discretization&) = delete;
 
+  /// See make_clearance_space().
+  void draw_near(double reach);
+
   int triangles() const { return static_cast<int>(mesh.triangles.size()); }
   const Spaces& spaces() const { return element.spaces(); }
 

@@ -56,6 +56,9 @@ class TraceSpace {
   /// The rotation at every point; empty for a membrane.
   Eigen::VectorXd rotation(const Eigen::VectorXd& x) const;
 
+  /// Takes the gaps of the clearance space as data; it differs in nothing else from the one before.
+  void meet(const ClearanceSpace& clearance);
+
   /// The unknown of m on an edge for a function and a component, and of the rotation at a point.
   int trace_at(int edge, int function, int component) const {
     return dofs_[edge * per_edge_ + function * components_ + component].unknown;
@@ -68,7 +71,6 @@ class TraceSpace {
   void fix(const BoundaryPart& part, const VectorField& value);
   void roll(const BoundaryPart& part);
   void reserve_contact(const ClearanceSpace& clearance);
-  void meet(const ClearanceSpace& clearance);
   void turn(int edge, const Vector& direction);
   /// The changes in the components that each edge carries.
   LocalVector own_changes(int triangle, const Eigen::VectorXd& dx) const;

@@ -77,9 +77,9 @@ class CertificateFields {
     const ContactResult found = active_set(condensed.contact(), {}, progress_);
     const Eigen::VectorXd x = condensed.traces(found.clearance, progress_);
     Recovered fields = recover(discretization_, x, progress_);
-    solution_ =
-        summarize(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
-                  {ActiveSet{}, std::nullopt}, progress_);
+    solution_ = describe(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
+                         {ActiveSet{}, std::nullopt}, progress_);
+    add_bound(problem, certify(discretization_, solution_, x, progress_), solution_, progress_);
     const Eigen::VectorXd clearance = discretization_.clearance.clearance(found.clearance);
     pair_.emplace(
         AdmissiblePair{{discretization_, solution_, x}, {discretization_, solution_.stress, clearance}});

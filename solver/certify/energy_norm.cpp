@@ -1,0 +1,57 @@
+#include "certify/energy_norm.hpp"
+
+#include <limits>
+#include <span>
+
+#include "certify/local_fields.hpp"
+
+namespace signorini {
+namespace {
+
+/// ∫ τ·Cτ over the piece of a triangle by a rule, with what that may miss: of two quadratic forms that differ by at
+/// most η times themselves each integral is at most (1 + η) / (1 − η) times the other's.
+template <int D>
+double square_on(const Discretization& problem, const Eigen::MatrixXd& stress, int t, const TrianglePiece& place,
+                 const LawPiece& piece, LawField<D>& law) {
+  const int of_fields = problem.spaces().order + 1;
+  const int degree = piece.degree_of_rule(of_fields, problem.spaces().order);
+  const double error = piece.error_of_rule(degree, of_fields);
+  if (error >= 1) return std::numeric_limits<double>::infinity();
+  const AffineMap map(problem.mesh.corners(t));
+  std::vector<Point> points;
+  for (const auto& [point, weight] : rule_of_degree(degree)) points.push_back(place(point));
+  const StressValues<D> values(problem.spaces(), points);
+  double sum = 0;
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const Tensor<D> tau = values(static_cast<int>(q), map, stress.col(t));
+    const double weight = rule_of_degree(degree)[q].weight * place.share * map.determinant;
+    sum += weight * tau.dot(law(map(points[q])).compliance * tau);
+  }
+  return sum * (1 + error) / (1 - error);
+}
+
+template <int D>
+Eigen::VectorXd squares(const Discretization& problem, const Eigen::MatrixXd& stress, const LawOnMesh& laws,
+                        Progress& progress) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.triangles());
+  LawField<D> law(problem.problem.material);
+  const TrianglePiece whole{{Point(0, 0), Point(1, 0), Point(0, 1)}, 1, {}};
+  for (int t = 0; t < problem.triangles(); ++t) {
+    progress.check_in(t);
+    const std::vector<LawPiece>& cut = laws.cut(t);
+    const std::span<const LawPiece> pieces = cut.empty() ? std::span(&laws.whole(t), 1) : std::span(cut);
+    for (const LawPiece& piece : pieces)
+      all[t] += square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, law);
+  }
+  return all;
+}
+
+}  // namespace
+
+Eigen::VectorXd energy_norm_squares(const Discretization& problem, const Eigen::MatrixXd& stress,
+                                    const LawOnMesh& laws, Progress& progress) {
+  return problem.spaces().components == 1 ? squares<1>(problem, stress, laws, progress)
+                                          : squares<2>(problem, stress, laws, progress);
+}
+
+}  // namespace signorini
