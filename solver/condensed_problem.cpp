@@ -20,10 +20,7 @@ constexpr double kFar = 1e4, kNear = 1e3;
 /// The reach that the gaps should have beside the displacement; infinite if they are near already.
 double reach_for(const ClearanceSpace& space, const Fields& fields) {
   const double displacement = fields.displacement.lpNorm<Eigen::Infinity>();
-  const bool is_far = std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
-    return row.unknown >= 0 && fields.clearance[row.unknown] > 0 && row.gap > kFar * displacement;
-  });
-  return is_far && displacement > 0 ? kNear * displacement : std::numeric_limits<double>::infinity();
+  return is_far(space, displacement) ? kNear * displacement : std::numeric_limits<double>::infinity();
 }
 
 /// A foundation was drawn so near that something touches it.
@@ -34,6 +31,12 @@ bool touches_beyond(const ClearanceSpace& space, const Eigen::VectorXd& clearanc
 }
 
 }  // namespace
+
+bool is_far(const ClearanceSpace& space, double displacement) {
+  return displacement > 0 && std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
+           return row.unknown >= 0 && row.gap > kFar * displacement;
+         });
+}
 
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const MeanStress& mean_stress, const Eigen::VectorXd& start) {

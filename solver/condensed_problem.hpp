@@ -16,6 +16,9 @@ namespace signorini {
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const MeanStress& mean_stress, const Eigen::VectorXd& start = {});
 
+/// A foundation is so far away beside the displacement that its gap would drown it.
+bool is_far(const ClearanceSpace& space, double displacement);
+
 /// A problem with everything but the contact unknowns eliminated, by an operator that was kept or is made.
 class CondensedProblem {
  public:

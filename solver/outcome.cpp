@@ -33,7 +33,8 @@ std::string why_stalled(const Settings& settings, const std::string& after) {
            "rho and augmentation \"auto\", or active_set";
   return "the contact conditions are not met" + after +
          " as far as the tolerance asks, and rounding keeps the method from more: gaps, loads and stiffness "
-         "differ by too many powers of ten; check their units, raise the tolerance or use active_set";
+         "differ by too many powers of ten, or the body is too thin somewhere; check units and sizes, raise the "
+         "tolerance or use active_set";
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ class Sweep::Reference {
       : problem_(std::move(posed)), condensed_(problem_, kept, progress), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
+    displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
     mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement);
     observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
@@ -97,7 +98,7 @@ class Sweep::Reference {
     progress.enter(Phase::iterate);
     const ClearanceSpace after = make_clearance_space(varied, condensed_.discretization().mesh);
     const auto grown = growth(space(), after, condensed_.discretization().spaces().order);
-    if (!grown) return std::nullopt;
+    if (!grown || is_far(after, displacement_)) return std::nullopt;
     const Eigen::VectorXd shift = of_unknowns(space(), *grown);
     contact_.c = condensed_.contact().c + contact_.s * shift;
     const ContactResult found =
@@ -182,7 +183,8 @@ class Sweep::Reference {
   CondensedProblem condensed_;
   ContactComplement contact_;  ///< for the gaps of the entry at hand
   Eigen::VectorXd clearance_;
-  double mean_stress_ = 0;  ///< of the variation that was recovered; its entries' residuals are by it
+  double displacement_ = 0;  ///< the largest of the variation that was recovered
+  double mean_stress_ = 0;   ///< of the variation that was recovered; its entries' residuals are by it
   SweepEntry entry_;
   std::vector<std::vector<AffineForce>> reactions_;  ///< by part
   std::map<std::size_t, AffineForce> held_;          ///< on rows that are no unknowns

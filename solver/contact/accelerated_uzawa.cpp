@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Spectra/MatOp/DenseSymMatProd.h>
 #include <Spectra/SymEigsSolver.h>
 
 #include "contact/multilevel_scaling.hpp"
@@ -11,31 +10,53 @@
 namespace signorini {
 namespace {
 
-/// An upper bound of the largest eigenvalue of D^(-1/2) S D^(-1/2), D the diagonal of S. Lanczos comes from
-/// below, to the tolerance; the margin covers that.
-double largest_eigenvalue(const ContactComplement& contact) {
+/// D^(-1/2) S D^(-1/2), D the diagonal of S, as Spectra asks for its products.
+class ScaledComplement {
+ public:
+  using Scalar = double;
+
+  ScaledComplement(const Eigen::MatrixXd& s, Progress& progress)
+      : s_(s), root_(s.diagonal().cwiseSqrt().cwiseInverse()), progress_(progress) {}
+
+  Eigen::Index rows() const { return s_.rows(); }
+  Eigen::Index cols() const { return s_.cols(); }
+  void perform_op(const double* in, double* out) const {
+    progress_.check();
+    const Eigen::VectorXd scaled = root_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = root_.cwiseProduct(s_ * scaled);
+  }
+  double largest_row_sum() const {
+    return (root_.cwiseProduct(s_.cwiseAbs() * root_)).maxCoeff();
+  }
+
+ private:
+  const Eigen::MatrixXd& s_;
+  const Eigen::VectorXd root_;
+  Progress& progress_;
+};
+
+/// An upper bound of its largest eigenvalue. Lanczos comes from below, to the tolerance; the margin covers that.
+double largest_eigenvalue(const ContactComplement& contact, Progress& progress) {
   const Eigen::Index n = contact.size();
   if (n == 1) return 1;
-  const Eigen::VectorXd root = contact.s.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = root.asDiagonal() * contact.s * root.asDiagonal();
   constexpr double tolerance = 1e-2, margin = 1.02;
-  Spectra::DenseSymMatProd<double> product(scaled);
-  Spectra::SymEigsSolver<Spectra::DenseSymMatProd<double>> lanczos(product, 1, std::min<Eigen::Index>(n, 20));
+  ScaledComplement product(contact.s, progress);
+  Spectra::SymEigsSolver<ScaledComplement> lanczos(product, 1, std::min<Eigen::Index>(n, 20));
   lanczos.init();
   lanczos.compute(Spectra::SortRule::LargestAlge, 100, tolerance, Spectra::SortRule::LargestAlge);
   if (lanczos.info() == Spectra::CompInfo::Successful) return margin * lanczos.eigenvalues()[0];
-  return scaled.cwiseAbs().rowwise().sum().maxCoeff();
+  return product.largest_row_sum();
 }
 
 /// The iterate λ with its gradient g = S λ − c, that is w p, and the direction of the conjugate gradients.
 class Iterate {
  public:
-  Iterate(const ContactComplement& contact, const Eigen::VectorXd& start)
+  Iterate(const ContactComplement& contact, const Eigen::VectorXd& start, Progress& progress)
       : contact_(contact),
         diagonal_(contact.s.diagonal()),
-        step_(kPart * 2 / largest_eigenvalue(contact)),
+        step_(kPart * 2 / largest_eigenvalue(contact, progress)),
         mean_stress_(kSmallPart * contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
-        scaling_(contact.s),
+        scaling_(contact.s, progress),
         lambda_(start.size() ? start : Eigen::VectorXd::Zero(contact.size())) {
     evaluate_gradient();
     begin_anew();
@@ -202,7 +223,7 @@ class Iterate {
 ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
                                 Progress& progress, const MeanStress& mean_stress,
                                 const Eigen::VectorXd& start) {
-  Iterate iterate(contact, start);
+  Iterate iterate(contact, start, progress);
   const auto converged = [&] { return iterate.meets(settings.tolerance); };
   while (progress.iterations() < settings.max_iterations) {
     const bool in_time = progress.record(iterate.step());

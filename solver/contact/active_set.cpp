@@ -3,9 +3,8 @@
 #include <limits>
 #include <optional>
 
-#include <Eigen/Cholesky>
-
 #include "contact/residuals.hpp"
+#include "system/dense_cholesky.hpp"
 
 namespace signorini {
 namespace {
@@ -33,16 +32,14 @@ std::vector<int> open_indices(const Closed& closed) {
 
 /// λ = 0 where closed, p = 0 elsewhere; nothing if the open part of S is singular but for rounding: contact
 /// that holds the body alone cannot open everywhere.
-std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, const Closed& closed) {
+std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, const Closed& closed,
+                                              Progress& progress) {
   const std::vector<int> open = open_indices(closed);
-  const Eigen::MatrixXd s = contact.s(open, open);
-  const Eigen::VectorXd c = contact.c(open);
-  const Eigen::LLT<Eigen::MatrixXd> factor(s);
-  const auto pivots = factor.matrixLLT().diagonal();
-  if (!open.empty() && (factor.info() != Eigen::Success ||
-                        pivots.minCoeff() * pivots.minCoeff() < 10 * kRounding * s.diagonal().maxCoeff()))
-    return std::nullopt;
-  const Eigen::VectorXd found = factor.solve(c);
+  const DenseCholesky factor(contact.s, open, progress);
+  double largest = 0;
+  for (const int i : open) largest = std::max(largest, contact.s(i, i));
+  if (!factor.is_positive_definite() || factor.smallest_pivot() < 10 * kRounding * largest) return std::nullopt;
+  const Eigen::VectorXd found = factor.solve(contact.c(open));
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact.size());
   for (std::size_t k = 0; k < open.size(); ++k) clearance[open[k]] = found[static_cast<Eigen::Index>(k)];
   return clearance;
@@ -51,11 +48,9 @@ std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, 
 /// A closed unknown that contact lets go of last sets the body free to move at no cost. The first of the open
 /// ones that this motion closes; nothing if it closes none.
 std::optional<int> first_to_close(const ContactComplement& contact, const Closed& closed,
-                                  const Eigen::VectorXd& clearance, int opening) {
+                                  const Eigen::VectorXd& clearance, int opening, Progress& progress) {
   const std::vector<int> open = open_indices(closed);
-  const Eigen::MatrixXd s = contact.s(open, open);
-  const Eigen::VectorXd coupled = contact.s(open, opening);
-  const Eigen::VectorXd motion = -s.llt().solve(coupled);
+  const Eigen::VectorXd motion = -DenseCholesky(contact.s, open, progress).solve(contact.s(open, opening));
   std::optional<int> first;
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < open.size(); ++k) {
@@ -69,16 +64,16 @@ std::optional<int> first_to_close(const ContactComplement& contact, const Closed
 /// Exchanges the violating indices, or the first half of them as often as it takes to keep the open part of
 /// S regular, and the last of them for one that closes instead.
 Eigen::VectorXd exchange(const ContactComplement& contact, std::vector<int> wrong,
-                         const Eigen::VectorXd& clearance, Closed& closed) {
+                         const Eigen::VectorXd& clearance, Closed& closed, Progress& progress) {
   for (;; wrong.resize((wrong.size() + 1) / 2)) {
     Closed next = closed;
     for (const int i : wrong) next[i] = !next[i];
-    auto found = solve_for_open(contact, next);
+    auto found = solve_for_open(contact, next, progress);
     if (!found && wrong.size() > 1) continue;
     if (!found) {
-      const auto closing = first_to_close(contact, closed, clearance, wrong[0]);
+      const auto closing = first_to_close(contact, closed, clearance, wrong[0], progress);
       if (closing) next[*closing] = true;
-      found = solve_for_open(contact, next);
+      found = solve_for_open(contact, next, progress);
     }
     if (!found) throw SolveError("the contact problem is singular: contact holds the body only just");
     closed = next;
@@ -118,7 +113,7 @@ ContactResult active_set(const ContactComplement& contact, const ActiveSet& sett
                          const Eigen::VectorXd& start) {
   Closed closed = closed_at(start, contact.size());
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact.size());
-  if (const auto found = solve_for_open(contact, closed))
+  if (const auto found = solve_for_open(contact, closed, progress))
     clearance = *found;
   else
     closed.assign(closed.size(), true);
@@ -139,7 +134,7 @@ ContactResult active_set(const ContactComplement& contact, const ActiveSet& sett
       wrong.resize(1);
     }
     const Eigen::VectorXd last = clearance;
-    clearance = exchange(contact, wrong, last, closed);
+    clearance = exchange(contact, wrong, last, closed, progress);
     force = contact.s * clearance - contact.c;
     if (!progress.record(record_of(contact, last, clearance, force, closed)))
       return {clearance.cwiseMax(0), Outcome::time_limit};

@@ -1,6 +1,6 @@
 #include "contact/condense.hpp"
 
-#include <Eigen/Cholesky>
+#include "system/dense_cholesky.hpp"
 
 namespace signorini {
 
@@ -13,9 +13,7 @@ Eigen::VectorXd CondensedContact::correction(const Eigen::VectorXd& imbalance, c
                                              Progress& progress) {
   const Cholesky::Condensed condensed = factor_.condense(imbalance, workspace_, progress);
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact_.size());
-  const Eigen::MatrixXd s = contact_.s(open, open);
-  const Eigen::VectorXd force = condensed.trailing(open);
-  const Eigen::VectorXd change = s.llt().solve(force);
+  const Eigen::VectorXd change = DenseCholesky(contact_.s, open, progress).solve(condensed.trailing(open));
   for (std::size_t k = 0; k < open.size(); ++k) clearance[open[k]] = change[static_cast<Eigen::Index>(k)];
   return factor_.expand(condensed, clearance, workspace_, progress);
 }

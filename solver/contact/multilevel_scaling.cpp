@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <numeric>
 
+#include "system/pace.hpp"
+
 namespace signorini {
 namespace {
 
 /// Each unknown with the free one that it is coupled with most strongly for its size.
-std::vector<int> pairs(const Eigen::MatrixXd& s) {
+std::vector<int> pairs(const Eigen::MatrixXd& s, Progress& progress) {
+  Pace pace(progress);
   std::vector<int> pair_of(s.rows(), -1);
   int count = 0;
   for (Eigen::Index i = 0; i < s.rows(); ++i) {
     if (pair_of[i] >= 0) continue;
     pair_of[i] = count;
+    pace.add(static_cast<std::size_t>(s.rows() - i));
     Eigen::Index partner = -1;
     double strongest = 0;
     for (Eigen::Index j = i + 1; j < s.rows(); ++j) {
@@ -34,11 +38,14 @@ int count_of(const std::vector<int>& aggregate) {
 
 /// Pᵀ S P, with only the open rows and columns of S.
 Eigen::MatrixXd coarsen(const Eigen::MatrixXd& s, const std::vector<int>& open,
-                        const std::vector<int>& aggregate) {
+                        const std::vector<int>& aggregate, Progress& progress) {
+  Pace pace(progress);
   const int n = count_of(aggregate);
   Eigen::MatrixXd coarse = Eigen::MatrixXd::Zero(n, n);
-  for (const int j : open)
+  for (const int j : open) {
+    pace.add(open.size());
     for (const int i : open) coarse(aggregate[i], aggregate[j]) += s(i, j);
+  }
   return coarse;
 }
 
@@ -54,11 +61,13 @@ Eigen::VectorXd inverse_diagonal(const Eigen::MatrixXd& s) {
 
 }  // namespace
 
-MultilevelScaling::MultilevelScaling(const Eigen::MatrixXd& s) : s_(s) {
-  std::vector<int> aggregate = pairs(s);
-  for (Eigen::MatrixXd level = s; count_of(aggregate) < level.rows(); aggregate = pairs(level)) {
-    level = coarsen(level, all_of(level), aggregate);
-    levels_.push_back({aggregate, {}, Eigen::VectorXd(level.rows())});
+MultilevelScaling::MultilevelScaling(const Eigen::MatrixXd& s, Progress& progress) : s_(s), progress_(progress) {
+  Eigen::MatrixXd coarser;
+  for (const Eigen::MatrixXd* level = &s;; level = &coarser) {
+    const std::vector<int> aggregate = pairs(*level, progress_);
+    if (count_of(aggregate) == level->rows()) return;
+    coarser = coarsen(*level, all_of(*level), aggregate, progress_);
+    levels_.push_back({aggregate, {}, Eigen::VectorXd(coarser.rows())});
   }
 }
 
@@ -67,8 +76,8 @@ void MultilevelScaling::restrict_to(const std::vector<int>& open) {
   for (const int i : open) inverse_[i] = 1 / s_(i, i);
   Eigen::MatrixXd coarser;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    coarser = l == 0 ? coarsen(s_, open, levels_[l].aggregate)
-                     : coarsen(coarser, all_of(coarser), levels_[l].aggregate);
+    coarser = l == 0 ? coarsen(s_, open, levels_[l].aggregate, progress_)
+                     : coarsen(coarser, all_of(coarser), levels_[l].aggregate, progress_);
     levels_[l].inverse = inverse_diagonal(coarser);
   }
 }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "progress.hpp"
+
 namespace signorini {
 
 /// Multilevel diagonal scaling of the open part of a contact complement S (Zhang 1992, after Bramble, Pasciak
@@ -16,7 +18,8 @@ namespace signorini {
 /// unknowns that S couples most strongly, so that no geometry is asked for.
 class MultilevelScaling {
  public:
-  explicit MultilevelScaling(const Eigen::MatrixXd& s);
+  /// Throws what Progress throws, here and later.
+  MultilevelScaling(const Eigen::MatrixXd& s, Progress& progress);
 
   /// Of these unknowns alone from now on: rows and columns of S elsewhere count as 0. As dear as a product
   /// with S.
@@ -34,6 +37,7 @@ class MultilevelScaling {
   };
 
   const Eigen::MatrixXd& s_;
+  Progress& progress_;
   Eigen::VectorXd inverse_;  ///< D_0⁻¹
   std::vector<Level> levels_;
 };

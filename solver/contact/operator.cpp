@@ -1,8 +1,8 @@
 #include "contact/operator.hpp"
 
-#include <cmath>
+#include <numeric>
 
-#include <Eigen/Cholesky>
+#include "system/dense_cholesky.hpp"
 
 namespace signorini {
 namespace {
@@ -15,12 +15,12 @@ Eigen::VectorXd weights_of(const ClearanceSpace& space) {
 }
 
 /// By more than rounding, as Cholesky demands it of the other unknowns.
-void require_positive_definite(const Eigen::MatrixXd& s) {
-  if (s.size() == 0) return;
-  const Eigen::LLT<Eigen::MatrixXd> factor(s);
-  const auto pivots = factor.matrixLLT().diagonal();
+void require_positive_definite(const Eigen::MatrixXd& s, Progress& progress) {
+  std::vector<int> all(s.rows());
+  std::iota(all.begin(), all.end(), 0);
+  const DenseCholesky factor(s, all, progress);
   constexpr double rounding = 1e-13;
-  if (factor.info() != Eigen::Success || !(std::pow(pivots.minCoeff() / pivots.maxCoeff(), 2) >= rounding))
+  if (!factor.is_positive_definite() || !(factor.smallest_pivot() >= rounding * factor.largest_pivot()))
     throw NotPositiveDefinite();
 }
 
@@ -29,7 +29,7 @@ void require_positive_definite(const Eigen::MatrixXd& s) {
 Operator::Operator(std::shared_ptr<const Mesh> mesh, const ClearanceSpace& space, const ElementSum& matrix,
                    bool held_by_contact_alone, Progress& progress)
     : mesh_(std::move(mesh)), factor_(matrix, space.unknowns, progress), weight_(weights_of(space)) {
-  if (!held_by_contact_alone) require_positive_definite(complement());
+  if (!held_by_contact_alone) require_positive_definite(complement(), progress);
 }
 
 std::size_t Operator::bytes() const {

@@ -8,7 +8,9 @@
 
 #include <cblas.h>
 
-extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+#include "system/lapack.hpp"
+#include "system/pace.hpp"
+#include "system/symmetric_update.hpp"
 
 namespace signorini {
 namespace {
@@ -44,24 +46,6 @@ class Stack {
   std::size_t used_ = 0;
 };
 
-/// Looks at the observer each time that a solve has read so many numbers of the factor.
-class Pace {
- public:
-  explicit Pace(Progress& progress) : progress_(progress) {}
-
-  void add(std::size_t numbers) {
-    read_ += numbers;
-    if (read_ < kRead) return;
-    read_ = 0;
-    progress_.check();
-  }
-
- private:
-  static constexpr std::size_t kRead = 1 << 18;
-  Progress& progress_;
-  std::size_t read_ = 0;
-};
-
 }  // namespace
 
 NotPositiveDefinite::NotPositiveDefinite() : std::runtime_error("the matrix is not positive definite") {}
@@ -76,6 +60,7 @@ class Cholesky::Factorisation {
       : own_(own),
         matrix_(matrix),
         progress_(progress),
+        pace_(progress),
         position_(matrix.size),
         stacks_(make_stacks()),
         diagonal_(matrix.size) {
@@ -89,7 +74,13 @@ class Cholesky::Factorisation {
     const int n = front.rest();
     stack(whole).pop(rest_size(front));
     const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
-    return lower.selfadjointView<Eigen::Lower>();
+    Eigen::MatrixXd all(n, n);
+    for (int j = 0; j < n; ++j) {
+      pace_.add(static_cast<std::size_t>(n - j));
+      all.col(j).tail(n - j) = lower.col(j).tail(n - j);
+      all.row(j).tail(n - j) = lower.col(j).tail(n - j).transpose();
+    }
+    return all;
   }
 
  private:
@@ -115,8 +106,10 @@ class Cholesky::Factorisation {
     progress_.check();
     const Dissection::Front front = own_.order_.front(piece);
     const Target target{own_.panel(piece), stack(piece).push(rest_size(front)), front.size(), front.pivots};
-    std::fill_n(target.columns, static_cast<std::size_t>(front.size()) * front.pivots, 0.);
-    std::fill_n(target.rest, rest_size(front), 0.);
+    for (int k = 0; k < front.size(); ++k) {
+      pace_.add(static_cast<std::size_t>(front.size() - k));
+      std::fill_n(target[k] + k, front.size() - k, 0.);
+    }
     for (int k = 0; k < front.size(); ++k) position_[front.unknowns[k]] = k;
     if (own_.order_.is_leaf(piece)) {
       for (const int element : own_.order_.elements(piece)) add_element(element, target);
@@ -172,6 +165,7 @@ class Cholesky::Factorisation {
     for (int j = 0; j < n; ++j) {
       double* column = target[places_[j]];
       const double* own = values + static_cast<std::ptrdiff_t>(j) * n;
+      pace_.add(static_cast<std::size_t>(n));
       for (int i = j; i < n; ++i) column[places_[i]] += own[i];
     }
   }
@@ -183,20 +177,12 @@ class Cholesky::Factorisation {
       progress_.check();
       const int width = std::min(kBlock, p - begin), end = begin + width;
       double* diagonal = front[begin] + begin;
-      int info = 0;
-      dpotrf_("L", &width, diagonal, &m, &info);
-      if (info != 0) throw NotPositiveDefinite();
+      if (!factorize_lower(width, diagonal, m)) throw NotPositiveDefinite();
       double* below = front[begin] + end;
       cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, m - end, width, 1,
                   diagonal, m, below, m);
-      if (end < p) {
-        cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, p - end, width, -1, below, m, 1,
-                    front[end] + end, m);
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rest, p - end, width, -1, front[begin] + p, m,
-                    below, m, 1, front[end] + p, m);
-      }
-      cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, rest, width, -1, front[begin] + p, m, 1,
-                  front.rest, std::max(1, rest));
+      subtract_square(m - end, p - end, width, below, m, front[end] + end, m, progress_);
+      subtract_square(rest, rest, width, front[begin] + p, m, front.rest, rest, progress_);
     }
   }
 
@@ -229,6 +215,7 @@ class Cholesky::Factorisation {
   Cholesky& own_;
   const ElementSum& matrix_;
   Progress& progress_;
+  Pace pace_;
   std::vector<int> position_;  ///< in the present front, of each of its unknowns
   std::vector<int> places_;
   std::array<Stack, 2> stacks_;
