@@ -15,14 +15,8 @@ struct Certificate {
   std::vector<EdgePressure> pressure;
 };
 
-/// Bounds the error of a discrete solution (design.md, "The certificate"). With an admissible displacement v
-/// and a stress σ* in equilibrium with Πf and Πt whose pressure p* on Γ_C is nowhere negative,
-///
-///     E = ‖σ − σ*‖²_C + ‖ε(u − v)‖²_E + 2 <p*, g − u_n> + 2 <p, g − v_n>
-///       = ‖C σ* − ε(v)‖²_E + 2 <p*, g − v_n> + 2 (f − Πf, u − v) + 2 <t − Πt, u − v>,
-///
-/// so that √E ≤ o + √(o² + A²) with A² the first two terms on the right and o the oscillation of the data.
-/// The distance ‖σ* − σ_h‖_C is added, so that the bound is one of the answer itself.
+/// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium with Πf and Πt
+/// whose pressure p* on Γ_C is nowhere negative: see bound_from().
 ///
 /// `coupling`: the unknowns of the trace space.
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,

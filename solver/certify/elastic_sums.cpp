@@ -58,7 +58,7 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule&
                                    const Inner& inner, TriangleSums& sums) const {
   if (!has_load_) return;
   const ProjectedLoad& load = problem_.body[t];
-  const Quadratic<2> balanced = balanced_load<2>(problem_, t);
+  const Quadratic<2> quadratic = quadratic_load<2>(problem_, t);
   double work = 0, rest_square = 0;
   for (int q = 0; q < rule.size(); ++q) {
     const MacroRule::Values& at = rule.values[q];
@@ -68,7 +68,7 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule&
       Tensor<2> slope = Tensor<2>::Zero();
       v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
     }
-    work += weight * (balanced * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
+    work += weight * (quadratic * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
     rest_square += weight * rest.squaredNorm();
   }
   sums.energy -= work;
@@ -81,7 +81,7 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
   const ProjectedLoad& load = problem_.body[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
   sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
-                       rest.value * (std::sqrt(area) * load.rest + area * load.balanced.norm());
+                       rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
   sums.add_unknown_strain(zeta);
 }
 
@@ -132,14 +132,15 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
   const bool lifted = v_.is_lifted(t), constant_law = problem_.element.has_constant_material();
   const MacroNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
-  const int degree = laws.whole(t).degree_of_rule(of_fields, problem_.spaces().order);
+  const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
   const std::vector<LawPiece>& pieces = laws.cut(t);
   std::optional<MacroRule> own;
-  if (!pieces.empty()) own.emplace(problem_.spaces(), pieces, of_fields);
+  if (!pieces.empty()) own.emplace(problem_.spaces(), pieces, of_fields, laws.tolerance());
   const MacroRule& rule = own ? *own : macro_rule(problem_.spaces(), degree);
   if (lifted) given.lifted = lifted_strains(t, map, rule);
   Inner inner;
-  TriangleSums sums = norms ? by_norms(*norms, given, inner) : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
+  TriangleSums sums = norms ? by_norms(*norms, given, inner)
+                            : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
   add_work_of_load(t, map, rule, given, inner, sums);
   add_rest_of_lifts(t, map, laws.whole(t), sums);
   return sums;

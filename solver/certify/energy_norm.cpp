@@ -12,9 +12,9 @@ namespace {
 /// most η times themselves each integral is at most (1 + η) / (1 − η) times the other's.
 template <int D>
 double square_on(const Discretization& problem, const Eigen::MatrixXd& stress, int t, const TrianglePiece& place,
-                 const LawPiece& piece, LawField<D>& law) {
+                 const LawPiece& piece, double tolerance, LawField<D>& law) {
   const int of_fields = problem.spaces().order + 1;
-  const int degree = piece.degree_of_rule(of_fields, problem.spaces().order);
+  const int degree = piece.degree_of_rule(of_fields, tolerance);
   const double error = piece.error_of_rule(degree, of_fields);
   if (error >= 1) return std::numeric_limits<double>::infinity();
   const AffineMap map(problem.mesh.corners(t));
@@ -41,7 +41,7 @@ Eigen::VectorXd squares(const Discretization& problem, const Eigen::MatrixXd& st
     const std::vector<LawPiece>& cut = laws.cut(t);
     const std::span<const LawPiece> pieces = cut.empty() ? std::span(&laws.whole(t), 1) : std::span(cut);
     for (const LawPiece& piece : pieces)
-      all[t] += square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, law);
+      all[t] += square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, laws.tolerance(), law);
   }
   return all;
 }

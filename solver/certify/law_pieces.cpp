@@ -13,12 +13,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What the integrals of a triangle may be off by, relative: a bound is the root of such numbers.
-/// Those of elastic bodies are larger.
-double tolerance_of(const Material& material) {
-  return components(material) == 1 ? 1e-8 : 1e-6;
-}
-/// The same where the law jumps along a curve, on a few triangles.
+/// The least tolerance where the law jumps along a curve, on a few triangles.
 constexpr double kToleranceOfJumps = 2e-4;
 
 constexpr int kOrders = LawPiece::kOrders;
@@ -132,12 +127,14 @@ Quality quality(const YoungPoisson& material, const std::vector<Value>& fields) 
   const Value one = constant_like(young, 1), two = constant_like(young, 2);
   const bool is_sound = range(young).lower() > 0 && range(poisson).lower() > -1 && range(poisson).upper() < 0.5;
   if (!is_sound) return unknown();
-  const Value shear = (one + poisson) / young,
-              volume = material.plane == Plane::strain ? shear * (one - two * poisson) : (one - poisson) / young;
+  const Value of_shear = one + poisson,
+              of_volume = material.plane == Plane::strain ? of_shear * (one - two * poisson) : one - poisson;
+  const Value shear = of_shear / young, volume = of_volume / young;
   const double least = std::min(range(shear).lower(), range(volume).lower());
   if (!(least > 0)) return unknown();
   Quality all{{}, std::max(range(shear).upper(), range(volume).upper()), 1 / least};
-  for (const Value& own : {shear, volume, one / shear, one / volume})
+  // The inverses from the data: a series that is inverted twice grows twice.
+  for (const Value& own : {shear, volume, young / of_shear, young / of_volume})
     for (int k = 0; k < kOrders; ++k) all.errors[k] = std::max(all.errors[k], error(own, k) / range(own).lower());
   return all;
 }
@@ -166,14 +163,14 @@ Quality quality_of(const Material& material, const std::vector<Value>& fields) {
 
 }  // namespace
 
-int LawPiece::degree_of_rule(int of_fields, int order) const {
-  const double small = order == 0 ? 1e-7 : 1e-9, best = errors.back();
+int LawPiece::degree_of_rule(int of_fields, double tolerance) const {
   for (const int degree : {5, 6, 8, 10, 18})
-    if (degree >= 2 * of_fields && error_of_rule(degree, of_fields) <= std::max(small, 1.5 * best)) return degree;
+    if (degree >= 2 * of_fields && error_of_rule(degree, of_fields) <= std::max(tolerance, 1.5 * errors.back())) return degree;
   return 30;
 }
 
-std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, CellBudget& budget) {
+std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, double tolerance,
+                                 CellBudget& budget) {
   const std::vector<const Field*> fields = fields_of(material);
   const AffineMap map(corners);
   std::vector<LawPiece> pieces;
@@ -193,13 +190,13 @@ std::vector<LawPiece> law_pieces(const Material& material, const std::array<Poin
       }
     }
     const Quality own = quality_of(material, series);
-    if (!(own.errors[kOrders - 1] * std::sqrt(share) <= tolerance_of(material))) return false;
+    if (!(own.errors[kOrders - 1] * std::sqrt(share) <= tolerance)) return false;
     add(cell, share, own);
     return true;
   };
   const Acceptance accept = [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
-    const double tolerance = is_undecided ? kToleranceOfJumps : tolerance_of(material);
-    return quality_of(material, models).errors[kOrders - 1] * share <= tolerance * std::sqrt(of_cell);
+    const double own = is_undecided ? std::max(kToleranceOfJumps, tolerance) : tolerance;
+    return quality_of(material, models).errors[kOrders - 1] * share <= own * std::sqrt(of_cell);
   };
   for_each_piece(
       fields, corners, accept, budget,
@@ -208,7 +205,8 @@ std::vector<LawPiece> law_pieces(const Material& material, const std::array<Poin
   return pieces;
 }
 
-LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, Progress& progress) {
+LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double tolerance, Progress& progress)
+    : tolerance_(tolerance) {
   const int count = is_constant(material) ? 1 : static_cast<int>(mesh.triangles.size());
   const std::vector<const Field*> fields = fields_of(material);
   for (const Field* field : fields)
@@ -220,7 +218,7 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, Progress& progr
   CellBudget budget{20 * count + 100'000};
   for (int t = 0; t < count; ++t) {
     progress.check_in(t);
-    std::vector<LawPiece> pieces = law_pieces(material, mesh.corners(t), budget);
+    std::vector<LawPiece> pieces = law_pieces(material, mesh.corners(t), tolerance, budget);
     LawPiece whole{pieces.front()};
     for (const LawPiece& own : pieces) {
       for (int k = 0; k < LawPiece::kOrders; ++k) whole.errors[k] = std::max(whole.errors[k], own.errors[k]);

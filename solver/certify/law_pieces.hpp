@@ -22,9 +22,9 @@ struct LawPiece {
   double softest = 0;   ///< C is at most this; infinite where E is not known to be positive definite
   double stiffest = 0;  ///< E is at most this
 
-  /// The degree of the cheapest rule for squares of fields of a degree: one that leaves a small error beside the square
-  /// of the scheme's, or hardly more than the best.
-  int degree_of_rule(int of_fields, int order) const;
+  /// The degree of the cheapest rule for squares of fields of a degree that is off by no more than the tolerance, or
+  /// hardly more than the best.
+  int degree_of_rule(int of_fields, double tolerance) const;
 
   /// Of a rule that is exact for one degree, where fields of another degree are squared.
   double error_of_rule(int degree, int of_fields) const {
@@ -32,13 +32,18 @@ struct LawPiece {
   }
 };
 
-/// Cuts a triangle for the fields of the material; a constant one is a single piece without error.
-std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, CellBudget& budget);
+/// Cuts a triangle for the fields of the material; a constant one is a single piece without error. `tolerance`: for the
+/// errors of the highest order.
+std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, double tolerance,
+                                 CellBudget& budget);
 
 /// The law of a problem on all triangles of its mesh.
 class LawOnMesh {
  public:
-  LawOnMesh(const Material& material, const Mesh& mesh, Progress& progress);
+  /// `tolerance`: what the integrals of squares may be off by, relative.
+  LawOnMesh(const Material& material, const Mesh& mesh, double tolerance, Progress& progress);
+
+  double tolerance() const { return tolerance_; }
 
   /// Of the whole triangle if it is a single piece, else the largest of its pieces.
   const LawPiece& whole(int t) const { return whole_[whole_.size() == 1 ? 0 : t]; }
@@ -48,6 +53,7 @@ class LawOnMesh {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
+  double tolerance_;
   std::vector<LawPiece> whole_;
   std::unordered_map<int, std::vector<LawPiece>> cut_;
   std::vector<std::string> unmet_;

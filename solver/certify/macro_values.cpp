@@ -53,10 +53,11 @@ const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
 MacroRule::MacroRule(const Spaces& spaces, int degree)
     : MacroRule(spaces, MacroElement::places(rule_of_degree(degree))) {}
 
-MacroRule::MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields)
+MacroRule::MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
+                     double tolerance)
     : MacroRule(spaces, std::vector<MacroElement::Place>()) {
   for (const LawPiece& piece : pieces) {
-    const int degree = piece.degree_of_rule(of_fields, spaces.order);
+    const int degree = piece.degree_of_rule(of_fields, tolerance);
     for (MacroElement::Place& place : MacroElement::places(rule_of_degree(degree), piece.place.corners))
       add(spaces, std::move(place));
     errors.resize(places.size(), piece.error_of_rule(degree, of_fields));

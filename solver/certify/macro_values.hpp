@@ -16,7 +16,7 @@ struct MacroRule {
   MacroRule(const Spaces& spaces, int degree);
   /// On each piece of the triangle in each part of the macro-element the rule that it needs for squares of fields of a
   /// degree, with the errors of the pieces.
-  MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields);
+  MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields, double tolerance);
 
   int size() const { return static_cast<int>(places.size()); }
 

@@ -1,5 +1,6 @@
 #include "certify/triangle_sums.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "certify/balanced_load.hpp"
@@ -39,10 +40,10 @@ void TriangleSums::add_unknown_strain(double zeta) {
   slack += zeta * (2 * fields + zeta);
 }
 
-MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given)
+MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given, bool balanced)
     : points(std::move(given)), stress(spaces, points_of(points)) {
   for (const auto& [point, weight] : points) {
-    balance.push_back(QuadraticBalance::reference_values(point));
+    if (balanced) balance.push_back(QuadraticBalance::reference_values(point));
     basis.push_back(quadratic_basis(point));
     gradients.push_back(quadratic_gradients(point));
   }
@@ -58,10 +59,22 @@ MembraneSums::MembraneSums(const PatchPairs& pairs)
   change_ = &pairs.change();
 }
 
-const MembraneSums::Rule& MembraneSums::rule_of_degree(int degree) const {
-  const auto found = rules_.find(degree);
-  if (found != rules_.end()) return found->second;
-  return rules_.emplace(degree, Rule(problem_.spaces(), signorini::rule_of_degree(degree))).first->second;
+/// Made once, by the order of the spaces.
+template <int Degree>
+const MembraneSums::Rule& MembraneSums::rule_of_degree(int order) {
+  static const std::array<Rule, 2> rules{
+      Rule(spaces_of(Scheme::nonconforming, 1), signorini::rule_of_degree(Degree), true),
+      Rule(spaces_of(Scheme::conforming, 1), signorini::rule_of_degree(Degree), true)};
+  return rules[order];
+}
+
+const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
+  const int order = problem_.spaces().order;
+  if (degree <= 5) return rule_of_degree<5>(order);
+  if (degree <= 6) return rule_of_degree<6>(order);
+  if (degree <= 8) return rule_of_degree<8>(order);
+  if (degree <= 10) return rule_of_degree<10>(order);
+  return degree <= 18 ? rule_of_degree<18>(order) : rule_of_degree<30>(order);
 }
 
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
@@ -71,18 +84,18 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   TriangleSums sums;
   const std::vector<LawPiece>& pieces = laws.cut(t);
   const auto degree_on = [&](const LawPiece& piece) {
-    return std::max(of_load, piece.degree_of_rule(of_fields, problem_.spaces().order));
+    return std::max(of_load, piece.degree_of_rule(of_fields, laws.tolerance()));
   };
   if (pieces.empty()) {
     const int degree = degree_on(laws.whole(t));
-    integrate(t, rule_of_degree(degree), laws.whole(t).error_of_rule(degree, of_fields), law, sums);
+    integrate(t, rule_for(degree), laws.whole(t).error_of_rule(degree, of_fields), law, sums);
   }
   for (const LawPiece& piece : pieces) {
     const int degree = degree_on(piece);
     std::vector<WeightedPoint> points;
     for (const auto& [point, weight] : signorini::rule_of_degree(degree))
       points.push_back({piece.place(point), piece.place.share * weight});
-    integrate(t, Rule(problem_.spaces(), std::move(points)), piece.error_of_rule(degree, of_fields), law, sums);
+    integrate(t, Rule(problem_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields), law, sums);
   }
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
@@ -93,7 +106,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   if (rest.slope > 0) {
     const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
     sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
-                         rest.value * (std::sqrt(area) * load.rest + area * load.balanced.norm());
+                         rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
     sums.add_unknown_strain(zeta);
   }
   return sums;
@@ -108,7 +121,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     w = v - second_->v.on<1>(t);
     potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
   }
-  const Quadratic<1> balanced = balanced_load<1>(problem_, t);
+  const Quadratic<1> acting = quadratic_load<1>(problem_, t);
   const std::optional<QuadraticBalance::Data> balance = balance_(t);
   const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
   double lifted_square = 0;
@@ -137,7 +150,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     sums.correction += of_correction;
     sums.stress += of_sigma;
     sums.strain += of_strain / 2;
-    const double load = balanced * rule.basis[q];
+    const double load = acting * rule.basis[q];
     sums.energy += of_strain / 2 - weight * load * value[0];
     double all_fields = 2 * of_sigma + 3 * of_correction + of_strain;
     if (second_) {

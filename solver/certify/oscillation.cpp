@@ -9,7 +9,7 @@ namespace signorini {
 template <int D>
 double oscillation(const Discretization& problem, int t, const LawOnMesh& laws) {
   const auto corners = problem.mesh.corners(t);
-  const double of_load = problem.body[t].rest;
+  const double of_load = problem.body[t].unbalanced;
   double sum = of_load > 0 ? linear_remainder<D>(corners) * of_load : 0;
   for (int e = 0; e < 3; ++e) {
     const int edge = problem.mesh.triangle_edges[t][e];

@@ -43,9 +43,13 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     const TriangleSums own = sums(t, law, laws);
     const double o = oscillation<D>(problem, t, laws);
     all += own;
-    all.known += 2 * o * std::sqrt(own.moved);
+    all.known += o * (2 * std::sqrt(own.moved) + std::sqrt(own.span));
     oscillation_square += o * o;
-    shares[owners[t]] += own.gap + own.correction + own.skew + o * o;
+    const double of_gap = std::pow(std::sqrt(own.gap + own.slack) + o, 2),
+                 of_correction = std::pow(std::sqrt(own.correction + own.slack) + o, 2);
+    balanced_gap += of_gap;
+    balanced_correction += of_correction;
+    shares[owners[t]] += of_gap + of_correction + own.skew;
   }
   CellBudget budget{100'000};
   for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
@@ -105,15 +109,14 @@ ErrorBound bound_from(const Totals& totals) {
   const double oscillation = std::sqrt(totals.oscillation_square) + totals.carried;
   bound.parts = {std::sqrt(sums.gap), std::sqrt(totals.contact), oscillation, std::sqrt(sums.correction),
                  std::sqrt(sums.skew)};
-  const double of_pair =
-      oscillation + std::sqrt(oscillation * oscillation + sums.gap + sums.slack + totals.contact);
-  const double p_square = of_pair * of_pair;
-  const double along =
-      least_over_the_way(sums.correction, sums.span, sums.along,
-                         std::sqrt(2 * p_square - std::max(0., sums.gap - sums.slack)), sums.known, sums.slack);
-  // (e − b, δ) from ‖e − b + δ‖² = ‖E ε(v) − sym σ_h‖².
-  const double across = (sums.direct_gap - sums.gap - sums.correction) / 2;
-  bound.value = std::sqrt(p_square + sums.correction + across + along + sums.skew + 3 * sums.slack);
+  const double gap = std::sqrt(totals.balanced_gap + sums.slack) + totals.carried,
+               correction = std::sqrt(totals.balanced_correction + sums.slack) + totals.carried;
+  const double p_square = gap * gap + totals.contact, radius = std::sqrt(p_square + totals.contact);
+  const double known = sums.known + totals.carried * (2 * std::sqrt(sums.moved) + std::sqrt(sums.span));
+  const double against_second =
+      least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) + oscillation * radius;
+  bound.value = std::sqrt(totals.contact + (gap * gap + correction * correction + sums.direct_gap + sums.slack) / 2 +
+                          std::min(correction * radius, against_second) + sums.skew + sums.slack);
   const double of_stress = std::sqrt(sums.stress);
   bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
   // The sums are made of some million terms at most.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <map>
-
 #include "certify/admissible_pair.hpp"
 #include "certify/edge_tractions.hpp"
 #include "certify/law_pieces.hpp"
@@ -52,7 +50,8 @@ class MembraneSums {
  private:
   /// Where the integrals are evaluated, with what does not depend on the triangle.
   struct Rule {
-    Rule(const Spaces& spaces, std::vector<WeightedPoint> points);
+    /// `balanced`: with the values of QuadraticBalance.
+    Rule(const Spaces& spaces, std::vector<WeightedPoint> points, bool balanced);
 
     std::vector<WeightedPoint> points;
     StressValues<1> stress;
@@ -61,7 +60,9 @@ class MembraneSums {
     std::vector<Eigen::Matrix<double, 2, 6>> gradients;
   };
 
-  const Rule& rule_of_degree(int degree) const;
+  template <int Degree>
+  static const Rule& rule_of_degree(int order);
+  const Rule& rule_for(int degree) const;
   void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
 
   const Discretization& problem_;
@@ -70,7 +71,6 @@ class MembraneSums {
   const AdmissiblePair* second_ = nullptr;
   const Eigen::MatrixXd* change_ = nullptr;
   const QuadraticBalance balance_;
-  mutable std::map<int, Rule> rules_;  ///< by degree, as far as they were needed
 };
 
 /// Elastic body: σ* is the symmetric stress on the macro-element that has the tractions of EdgeTractions, is

@@ -19,6 +19,9 @@ constexpr double kTolerance = 1e-9;
 /// The same where f jumps along a curve, on a few triangles.
 constexpr double kToleranceOfJumps = 5e-7;
 
+/// Of what f has between P1 and P2: if the rest is larger where f jumps, that part is left with it.
+constexpr double kMuch = 0.2;
+
 using Nodes = Eigen::Matrix<double, 1, 6>;
 
 /// ∫ φ_i φ_j over the reference triangle for the basis of P2, inverted.
@@ -32,6 +35,22 @@ const Eigen::Matrix<double, 6, 6>& inverse_mass() {
   return inverse;
 }
 
+/// The projection onto P1 of what is quadratic, both at the nodes of P2.
+const Eigen::Matrix<double, 6, 6>& onto_linear() {
+  static const Eigen::Matrix<double, 6, 6> map = []() -> Eigen::Matrix<double, 6, 6> {
+    // The linear functions at the nodes, from their values at the corners.
+    Eigen::Matrix<double, 3, 6> linear = Eigen::Matrix<double, 3, 6>::Zero();
+    for (int corner = 0; corner < 3; ++corner) {
+      linear(corner, corner) = 1;
+      for (const int other : {1, 2}) linear(corner, 3 + (corner + other) % 3) = 0.5;
+    }
+    const Eigen::Matrix<double, 6, 6> mass = inverse_mass().inverse();
+    const Eigen::Matrix3d of_linear = linear * mass * linear.transpose();
+    return mass * linear.transpose() * of_linear.inverse() * linear;
+  }();
+  return map;
+}
+
 /// f on a triangle in the points of the rules of all its pieces, with what the sums are off by. Integrals are over the
 /// reference triangle.
 struct Samples {
@@ -40,6 +59,7 @@ struct Samples {
   double force = 0, work = 0;   ///< ProjectedLoad::uncertain_force, uncertain_work
   double value_square = 0;      ///< of what f is off by from polynomials of which the rule knows the square, ∫ ( )²
   bool is_finite = true;
+  bool jumps = false;  ///< or has a kink
 
   Nodes projection() const {
     Nodes moments = Nodes::Zero();
@@ -91,6 +111,7 @@ class Sampler {
       samples_.value_square += share / 2 * 4 * r(degree / 2 + 1) * r(degree / 2 + 1);
       return true;
     }
+    samples_.jumps = samples_.jumps || is_undecided_;
     return false;
   }
 
@@ -147,9 +168,10 @@ Samples sampled(const Field& function, const AffineMap& map) {
 LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh) {
   const VectorField& body = problem.body;
   const int count = static_cast<int>(mesh.triangles.size()), d = components(problem.material);
-  ProjectedLoad constant{Eigen::MatrixXd::Zero(d, 6)};
+  ProjectedLoad constant{Eigen::MatrixXd::Zero(d, 6), Eigen::MatrixXd::Zero(d, 6)};
   for (int c = 0; c < body.size(); ++c)
-    if (body.fields()[c].is_constant()) constant.balanced.row(c).setConstant(body(c, Point::Zero()));
+    if (body.fields()[c].is_constant()) constant.projection.row(c).setConstant(body(c, Point::Zero()));
+  constant.balanced = constant.projection;
   if (std::ranges::all_of(body.fields(), &Field::is_constant)) {
     all_.push_back(constant);
     return;
@@ -161,11 +183,12 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh) {
   all_.assign(count, constant);
   for (int t = 0; t < count; ++t) {
     const AffineMap map(mesh.corners(t));
-    double rest_square = 0;
+    double rest_square = 0, unbalanced_square = 0;
     for (int c = 0; c < d; ++c) {
       const Field& field = body.fields()[c];
       if (field.is_constant()) continue;
       if (const auto value = field.formula() ? only_value(*field.formula(), mesh.corners(t)) : std::nullopt) {
+        all_[t].projection.row(c).setConstant(*value);
         all_[t].balanced.row(c).setConstant(*value);
         continue;
       }
@@ -177,13 +200,20 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh) {
         unmet_.push_back(field.name() + " is not known to be finite near " + to_string(mesh.centroid(t)));
       const Nodes projection = samples.projection();
       const double rest = samples.rest(projection);
-      all_[t].balanced.row(c) = projection;
+      const Nodes linear = projection * onto_linear(), between = projection - linear;
+      const double of_between = between * inverse_mass().inverse() * between.transpose();
+      const bool leaves = samples.jumps && rest > kMuch * std::sqrt(of_between);
+      all_[t].projection.row(c) = projection;
+      all_[t].balanced.row(c) = leaves ? linear : projection;
       all_[t].uncertain_force += map.determinant * samples.force;
       all_[t].uncertain_work += map.determinant * samples.work;
       // Below this the rest is rounding.
-      if (rest > kEnclosureRounding * largest) rest_square += map.determinant * rest * rest;
+      if (rest <= kEnclosureRounding * largest) continue;
+      rest_square += map.determinant * rest * rest;
+      unbalanced_square += map.determinant * (rest * rest + (leaves ? of_between + 2 * samples.work * between.cwiseAbs().maxCoeff() * 5 / 3 : 0));
     }
     all_[t].rest = std::sqrt(rest_square);
+    all_[t].unbalanced = std::sqrt(unbalanced_square);
   }
 }
 

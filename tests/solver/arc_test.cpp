@@ -248,7 +248,7 @@ TEST(Arcs, NotesSayWhatThePeakAndTheBoundMean) {
     EXPECT_TRUE(says(round, bound));
     // Square corners do no harm.
     EXPECT_TRUE(
-        solve(problems::pressed_block(scheme, Pattern::crossed, 0.3, 1), settings).summary.notes.empty());
+        solve(problems::pressed_block(scheme, Pattern::crossed, 0.3, 0.01), settings).summary.notes.empty());
   }
 }
 

@@ -148,6 +148,27 @@ TEST(Certificate, OfThePapersProblemIsCloseToItsError) {
     }
 }
 
+/// The load jumps along lines that no mesh has: what each triangle's balance lacks is paid for.
+TEST(Certificate, OfALoadThatJumpsThroughTheBodyIsCloseToItsError) {
+  for (const Scheme scheme : schemes)
+    for (const char* load : {"x < 0.3 ? 10 : -10", "x + 0.7*y < 0.61 ? 10 : -5"}) {
+      Problem problem = problems::paper(Scheme::conforming, 32);
+      problem.body = problems::formula(load);
+      problem.mesh.refine = 2;
+      const Solution fine = solve_exactly(problem);
+      const ErrorBound fine_bound = fine.summary.error_bound.value();
+      const double energy = (fine_bound.energy_lower + fine_bound.energy_upper) / 2;
+      problem.scheme = scheme;
+      problem.mesh.refine = 0;
+      const Solution coarse = solve_exactly(problem);
+      const ErrorBound bound = coarse.summary.error_bound.value();
+      const double error = distance(problem, coarse, fine, 2),
+                   left = std::sqrt(error * error + 2 * (bound.energy_upper - energy) + contact_term(coarse, fine));
+      EXPECT_GE(bound.value, left) << load;
+      EXPECT_LE(bound.value, 1.5 * left) << load;
+    }
+}
+
 /// Of random problems on so many times the divisions that they come with, sorted.
 std::map<Scheme, std::vector<double>> effectivities(const std::vector<unsigned>& seeds, int times) {
   std::map<Scheme, std::vector<double>> effectivities;
@@ -378,7 +399,7 @@ TEST(Certificate, SharesTheBoundOutToTheTriangles) {
     EXPECT_GE(solution.error_squares.minCoeff(), 0);
     const double sum = parts.constitutive * parts.constitutive + parts.contact * parts.contact +
                        parts.oscillation * parts.oscillation + parts.equilibration * parts.equilibration;
-    EXPECT_NEAR(solution.error_squares.sum(), sum, 1e-12 * sum);
+    EXPECT_NEAR(solution.error_squares.sum(), sum, 1e-8 * sum);
   }
 }
 

@@ -135,6 +135,29 @@ TEST_P(ContactEnds, AreBoundedCloseToTheError) {
   }
 }
 
+/// On 32 × 32 squares a load that jumps along a line that no mesh has.
+TEST_P(ContactEnds, WithAJumpThroughTheBodyAreBoundedCloseToTheError) {
+  const auto& [scheme, poisson] = GetParam();
+  Problem problem;
+  problem.mesh.fineness = Divisions{32, 32};
+  problem.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
+  problem.body = VectorField(Field(0), problems::formula("x + 0.7*y < 0.61 ? -1 : 0.5"));
+  problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{0.02}}};
+  problem.scheme = Scheme::conforming;
+  problem.mesh.refine = 1;
+  const Solution fine = solved(problem);
+  const ErrorBound fine_bound = *fine.summary.error_bound;
+  const double energy = (fine_bound.energy_lower + fine_bound.energy_upper) / 2;
+  problem.scheme = scheme;
+  problem.mesh.refine = 0;
+  const Solution coarse = solved(problem);
+  const ErrorBound bound = *coarse.summary.error_bound;
+  const double error = distance(problem, coarse, fine, 1),
+               left_side = std::sqrt(error * error + 2 * (bound.energy_upper - energy) + contact_term(coarse, fine));
+  EXPECT_TRUE(bound.guaranteed);
+  EXPECT_LE(bound.value, 2.2 * left_side);
+}
+
 INSTANTIATE_TEST_SUITE_P(Poisson, ContactEnds,
                          testing::Combine(testing::Values(Scheme::conforming, Scheme::nonconforming),
                                           testing::Values(0., 0.1, 0.3, 0.49, 0.4999)));

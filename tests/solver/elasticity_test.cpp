@@ -314,7 +314,7 @@ TEST(SeveralBodies, OneThatNothingHoldsIsNamed) {
 }
 
 TEST(Mended, AMeshTooCoarseForThePairIsRefinedAndSaysSo) {
-  Problem problem = problems::pressed_block(Scheme::nonconforming, Pattern::right, 0.3, 0.7);
+  Problem problem = problems::pressed_block(Scheme::nonconforming, Pattern::right, 0.3, 0.007);
   problem.mesh.fineness = Divisions{1, 1};
   problem.boundary["left"] = Fixed{};
   const Solution mended = solve(problem, {ActiveSet{}, {}});

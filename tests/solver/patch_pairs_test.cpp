@@ -177,7 +177,7 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
                                          std::get<Rectangle>(problem.domain), divisions, Pattern::right)));
     for (const auto& pairs : pairs_of(whole)) {
       Totals totals(whole.discretization().triangles());
-      totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, whole.progress()}, pairs->first(),
+      totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()}, pairs->first(),
                     MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
       const Sums sums = sums_of(*pairs);
       // Lifts are integrated by a quadrature.
@@ -252,7 +252,7 @@ TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
   expect_to_fit(whole, all);
   for (const auto& pairs : all) {
     Totals totals(whole.discretization().triangles());
-    totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, whole.progress()}, pairs->first(),
+    totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()}, pairs->first(),
                   MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
     const TriangleSums& sums = totals.all;
     EXPECT_LT(sums.correction - 2 * sums.along + sums.span, 0.03 * sums.correction);

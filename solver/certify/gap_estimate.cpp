@@ -1,0 +1,48 @@
+#include "certify/gap_estimate.hpp"
+
+#include <Eigen/LU>
+
+namespace signorini {
+namespace {
+
+/// The middles of the edges: in the centroid the gradient of v is better than elsewhere.
+const std::vector<Point> kPoints{Point(0.5, 0.5), Point(0, 0.5), Point(0.5, 0)};
+
+template <int D>
+Tensor<D> symmetric(Tensor<D> tensor) {
+  if constexpr (D == 2) tensor[1] = tensor[2] = (tensor[1] + tensor[2]) / 2;
+  return tensor;
+}
+
+template <int D>
+double estimate(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissibleDisplacement& v,
+                Progress& progress) {
+  LawField<D> law(problem.problem.material);
+  const StressValues<D> values(problem.spaces(), kPoints);
+  double gap = 0, size = 0;
+  for (int t = 0; t < problem.triangles(); ++t) {
+    progress.check_in(t);
+    const AffineMap map(problem.mesh.corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    const Quadratic<D> own = v.on<D>(t);
+    for (std::size_t q = 0; q < kPoints.size(); ++q) {
+      const auto& [compliance, stiffness] = law(map(kPoints[q]));
+      const Tensor<D> sigma = symmetric<D>(values(static_cast<int>(q), map, stress.col(t))),
+                      strain = symmetric<D>(gradient<D>(inverse, own * quadratic_gradients(kPoints[q]).transpose())),
+                      difference = compliance * sigma - strain;
+      gap += map.determinant * difference.dot(stiffness * difference);
+      size += map.determinant * sigma.dot(compliance * sigma);
+    }
+  }
+  return size > 0 ? gap / size : 1;
+}
+
+}  // namespace
+
+double estimate_gap(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissibleDisplacement& v,
+                    Progress& progress) {
+  return problem.spaces().components == 1 ? estimate<1>(problem, stress, v, progress)
+                                          : estimate<2>(problem, stress, v, progress);
+}
+
+}  // namespace signorini
