@@ -12,7 +12,8 @@ namespace {
 /// What g − p may be in the mean, relative to v.
 constexpr double kTolerance = 1e-10;
 
-/// 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its enclosure allows.
+/// 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its enclosure allows; 0 where that is not
+/// known to be finite, which AdmissibleDisplacement has refused.
 double contact_term(const Discretization& problem, const ContactPressure& pressure,
                     const AdmissibleDisplacement& v, int i, CellBudget& budget) {
   const ContactEdge& contact = problem.clearance.edges[i];
@@ -22,12 +23,14 @@ double contact_term(const Discretization& problem, const ContactPressure& pressu
   const double size = std::abs(v.along_contact(contact, 0)) + std::abs(v.along_contact(contact, 0.5)) +
                       std::abs(v.along_contact(contact, 1));
   double sum = 0;
-  for (const EdgePiece& piece : pieces_on_edge(gap, EdgeLine(problem.mesh, contact.edge), kTolerance * size, budget))
+  for (const EdgePiece& piece : pieces_on_edge(gap, EdgeLine(problem.mesh, contact.edge), kTolerance * size, budget)) {
+    if (!std::isfinite(piece.remainder)) return 0;
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = piece.begin + piece.length() * edge_rule().points[q];
       const double room = piece(s) + piece.remainder - v.along_contact(contact, s);
       sum += piece.length() * edge_rule().weights[q] * ((1 - s) * first + s * second) * room;
     }
+  }
   return 2 * std::max(0., sum) * problem.mesh.length(contact.edge);
 }
 
