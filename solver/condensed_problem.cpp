@@ -48,7 +48,7 @@ ContactResult find_clearance(const ContactComplement& contact, const Method& met
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,
                                    Progress& progress)
-    : reused_(false), discretization_(std::make_unique<Discretization>(problem, *mesh)) {
+    : reused_(false), discretization_(std::make_unique<Discretization>(problem, *mesh, &progress)) {
   const bool held = held_by_contact_alone(*discretization_);
   progress.enter(Phase::assemble);
   const HybridSystem system = assemble(*discretization_, progress);
@@ -62,7 +62,7 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
                                    Progress& progress)
     : operator_(std::move(kept)), reused_(true) {
   progress.enter(Phase::assemble);
-  discretization_ = std::make_unique<Discretization>(problem, operator_->mesh());
+  discretization_ = std::make_unique<Discretization>(problem, operator_->mesh(), &progress);
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
   condensed_ =
       std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);

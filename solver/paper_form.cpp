@@ -38,12 +38,12 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
 
 Solution iterate_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  return iterate(Discretization(problem, *mesh), settings, progress);
+  return iterate(Discretization(problem, *mesh, &progress), settings, progress);
 }
 
 Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  Solution solution = iterate(Discretization(problem, *mesh), settings, progress);
+  Solution solution = iterate(Discretization(problem, *mesh, &progress), settings, progress);
   progress.enter(Phase::certify);
   add_bound(problem, certify_iterate(problem, mesh, solution, progress), solution, progress);
   return solution;

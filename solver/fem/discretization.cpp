@@ -5,11 +5,11 @@
 
 namespace signorini {
 
-Discretization::Discretization(const Problem& posed, const Mesh& given)
+Discretization::Discretization(const Problem& posed, const Mesh& given, Progress* progress)
     : problem(posed),
       mesh(given),
       element(posed),
-      body(posed, mesh),
+      body(posed, mesh, progress),
       traction(posed, mesh),
       load(spaces().displacements(), triangles()),
       clearance(make_clearance_space(posed, mesh)),

@@ -8,13 +8,15 @@
 #include "fem/trace_space.hpp"
 #include "fem/traction_field.hpp"
 #include "mesh/mesh.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 
 /// A problem on its mesh: the spaces of its scheme with their data. Refers to both; its members
 /// refer to each other.
 struct Discretization {
-  Discretization(const Problem& problem, const Mesh& mesh);
+  /// `progress`: asked while loads that vary are projected; throws what it throws.
+  Discretization(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
   Discretization(const Discretization&) = delete;
   Discretization& operator=(const Discretization&) = delete;
 

@@ -165,7 +165,7 @@ Samples sampled(const Field& function, const AffineMap& map) {
 
 }  // namespace
 
-LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh) {
+LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progress* progress) {
   const VectorField& body = problem.body;
   const int count = static_cast<int>(mesh.triangles.size()), d = components(problem.material);
   ProjectedLoad constant{Eigen::MatrixXd::Zero(d, 6), Eigen::MatrixXd::Zero(d, 6)};
@@ -182,6 +182,7 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh) {
   CellBudget budget{20 * count + 100'000};
   all_.assign(count, constant);
   for (int t = 0; t < count; ++t) {
+    if (progress && t % 64 == 0) progress->check();
     const AffineMap map(mesh.corners(t));
     double rest_square = 0, unbalanced_square = 0;
     for (int c = 0; c < d; ++c) {

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "problem/problem.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 
@@ -27,7 +28,8 @@ struct ProjectedLoad {
 /// The load of a problem on all triangles of its mesh.
 class LoadProjection {
  public:
-  LoadProjection(const Problem& problem, const Mesh& mesh);
+  /// `progress` may be null; else throws what it throws.
+  LoadProjection(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
 
   const ProjectedLoad& operator[](int t) const { return all_[all_.size() == 1 ? 0 : t]; }
   /// f is not the same all over some triangle.
