@@ -172,7 +172,7 @@ class Rows {
       JobResult result;
       unpack_findings(findings, result);
       return true;
-    } catch (const std::exception&) {
+    } catch (const std::runtime_error&) {
       return false;
     }
   }

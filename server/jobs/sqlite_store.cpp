@@ -478,7 +478,7 @@ std::optional<JobResult> SqliteStore::result(const std::string& id) {
   try {
     unpack_findings(findings, result);
     return result;
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error&) {
     return damaged_result(id, "result");
   }
 }
