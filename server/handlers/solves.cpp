@@ -80,8 +80,8 @@ bool picks_summary_alone(const Request& request) {
 JobWithResult with_summary(Job job) {
   Solution solution;
   solution.summary = *job.verdict.summary;
-  JobResult result{std::make_shared<const std::string>(), std::make_shared<const Solution>(std::move(solution)),
-                   nullptr};
+  JobResult result{std::make_shared<const std::string>(),
+                   std::make_shared<const Solution>(std::move(solution)), nullptr};
   return {std::move(job), std::move(result)};
 }
 
@@ -93,10 +93,11 @@ HttpError key_reused(const std::string& key, const KeyReused& reused) {
 }
 
 HttpError share_used_up(const std::string& name, std::size_t limit) {
-  return {429,
-          {"share-used-up", "The share of the queue is used up",
-           std::to_string(limit) + " solves of `" + name + "` are waiting, which is its limit (--token-file)."},
-          {{"Retry-After", "5"}}};
+  return {
+      429,
+      {"share-used-up", "The share of the queue is used up",
+       std::to_string(limit) + " solves of `" + name + "` are waiting, which is its limit (--token-file)."},
+      {{"Retry-After", "5"}}};
 }
 
 /// Queues the problem and returns the id of its job, or of the earlier one with the same key and problem.
@@ -238,7 +239,8 @@ Response get_solve(Service& service, const Request& request) {
 Response get_result(Service& service, const Request& request) {
   allow_only(request.query, {"fields"});
   const api::ResultFields fields = fields_of(request);
-  if (picks_summary_alone(request)) return result_response(request, with_summary(find_solved(service, request)), fields);
+  if (picks_summary_alone(request))
+    return result_response(request, with_summary(find_solved(service, request)), fields);
   JobWithResult ended = find_job_with_result(service, request);
   require_available(fields, ended.result.solution->components);
   return result_response(request, std::move(ended), fields);

@@ -33,8 +33,9 @@ std::vector<std::string> texts(const SQLite::Database& database, const std::stri
 
 std::string schema_of(const SQLite::Database& database) {
   std::string schema;
-  for (const std::string& part : texts(database, "SELECT type || name || tbl_name || sql FROM sqlite_master "
-                                                 "WHERE sql IS NOT NULL ORDER BY name"))
+  for (const std::string& part : texts(database,
+                                       "SELECT type || name || tbl_name || sql FROM sqlite_master "
+                                       "WHERE sql IS NOT NULL ORDER BY name"))
     schema += part + '\n';
   return schema;
 }
@@ -62,7 +63,8 @@ std::optional<std::string> fault_of_file(const path& file, const std::string& vf
     check.executeStep();
     const std::string verdict = check.getColumn(0).getString();
     if (verdict != "ok") return verdict;
-    return has_its_schema(database) ? std::nullopt : std::optional<std::string>("its tables are not those of its version");
+    return has_its_schema(database) ? std::nullopt
+                                    : std::optional<std::string>("its tables are not those of its version");
   } catch (const SQLite::Exception& error) {
     if (is_of_file(error, file)) return error.getErrorStr();
     throw cannot_open(file, error.getErrorStr());
@@ -213,8 +215,8 @@ Findings repair(const DataDir& directory, Depth depth, const std::string& vfs) {
   const std::size_t found = write_anew(file, *fault, vfs);
   Findings findings;
   findings.damage.push_back("the file did not hang together (" + *fault + "); " + std::to_string(found) +
-                            " solves were brought into a new one, and the old one is kept as " + file.string() +
-                            ".damaged");
+                            " solves were brought into a new one, and the old one is kept as " +
+                            file.string() + ".damaged");
   try {
     for (std::string& damage : repair_rows(file, depth, vfs)) findings.damage.push_back(std::move(damage));
   } catch (const SQLite::Exception& error) {

@@ -34,8 +34,8 @@ std::runtime_error damaged() {
   return std::runtime_error("stored bytes are damaged");
 }
 
-/// The size that damaged bytes claim may be any: room is made as what they hold comes to need it, which doubles hardly
-/// ever do.
+/// The size that damaged bytes claim may be any: room is made as what they hold comes to need it, which
+/// doubles hardly ever do.
 std::string decompress(const std::string& packed) {
   const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) throw damaged();
