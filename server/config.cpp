@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -57,7 +58,7 @@ void add_access_flags(CLI::App& app, DaemonConfig& daemon) {
   add_flag(app, "--rate", daemon.rate, "Requests a second of one client; 0 is no limit")
       ->check(CLI::Range(0.0, 1e6));
   add_flag(app, "--token-file", daemon.token_file,
-           "Tokens by which clients are let in, one a line; needed to listen beyond this machine");
+           "Tokens of clients, `name scopes token` a line; needed to listen beyond this machine");
   app.add_flag("--insecure", daemon.insecure, "Listens beyond this machine without tokens")
       ->envname(variable_of("insecure"));
   add_flag(app, "--cors-origin", daemon.cors_origins,
@@ -94,7 +95,7 @@ void add_daemon_flags(CLI::App& app, DaemonConfig& daemon) {
   add_flag(app, "--max-subscribers", daemon.max_subscribers, "Streams of events that may be open")
       ->check(CLI::Range(1, 100000));
   add_flag(app, "--drain-seconds", daemon.drain_seconds,
-           "How long running solves may go on after SIGTERM; then they are queued again")
+           "The service ends within so long after SIGTERM; solves that run are queued again")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{3600}));
   add_access_flags(app, daemon);
 }
@@ -130,6 +131,20 @@ CLI::App* add_study(CLI::App& app, StudyConfig& study) {
   return command;
 }
 
+CLI::App* add_check(CLI::App& app, CheckConfig& check) {
+  CLI::App* command = add_command(
+      app, "check", "Look through a data directory that no service runs on, and repair what is damaged");
+  command->add_option("DIR", check.directory, "The directory (--data-dir)")->required();
+  return command;
+}
+
+/// Kubernetes sets SIGNORINI_PORT=tcp://… in every pod beside a Service that is called `signorini`.
+void forget_service_link() {
+  const std::string variable = variable_of("port");
+  const char* const port = std::getenv(variable.c_str());
+  if (port != nullptr && std::string_view(port).starts_with("tcp://")) ::unsetenv(variable.c_str());
+}
+
 int exit_code_of(CLI::App& app, const CLI::ParseError& error) {
   return app.exit(error) == 0 ? exit_done : exit_bad_input;
 }
@@ -137,6 +152,7 @@ int exit_code_of(CLI::App& app, const CLI::ParseError& error) {
 }  // namespace
 
 CommandLine read_command_line(int argc, const char* const* argv) {
+  forget_service_link();
   CommandLine line;
   SolveConfig solve;
   CLI::App app("Signorini: frictionless contact by the dual mixed finite element method, as an HTTP service");
@@ -153,12 +169,15 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   StudyConfig study;
   const CLI::App* solve_command = add_solve(app, solve);
   const CLI::App* study_command = add_study(app, study);
+  CheckConfig check;
+  const CLI::App* check_command = add_check(app, check);
   const CLI::App* health_command = add_command(
       app, "health", "Ask the service on --host and --port whether it lives; exit code 0 if it does");
   try {
     app.parse(argc, argv);
     if (solve_command->parsed()) line.config.solve = solve;
     if (study_command->parsed()) line.config.study = study;
+    if (check_command->parsed()) line.config.check = check;
     line.config.health = health_command->parsed();
     if (print_config) {
       std::cout << app.config_to_str(true, true);

@@ -43,6 +43,11 @@ struct StudyConfig {
   std::string format = "table";  ///< or `json` or `csv`
 };
 
+/// `signorinid check`.
+struct CheckConfig {
+  std::string directory;
+};
+
 struct Config {
   std::string log_level = "info";
   std::string log_format = "text";  ///< or `json`
@@ -50,6 +55,7 @@ struct Config {
   // One of these is set if that is what is asked.
   std::optional<SolveConfig> solve;
   std::optional<StudyConfig> study;
+  std::optional<CheckConfig> check;
   bool health = false;  ///< `signorinid health`
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <cstdlib>
+#include <thread>
 
 #include <spdlog/spdlog.h>
 
@@ -55,15 +58,60 @@ Access access_of(const DaemonConfig& config) {
           RequestRate(config.rate), Cors(config.cors_origins)};
 }
 
+void read_tokens_again(BearerTokens& tokens) {
+  try {
+    tokens.reload();
+    spdlog::info("SIGHUP: the tokens are read again");
+  } catch (const BadTokenFile& error) {
+    spdlog::error("SIGHUP: the tokens stay as they were: {}", error.what());
+  }
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// By when the service ends after a signal, whatever runs: so long after it as --drain-seconds says, or a
+/// second. The last quarter of that is for what must be done then.
+class Deadline {
+ public:
+  explicit Deadline(std::chrono::seconds drain)
+      : drained_(Clock::now() + drain * 3 / 4),
+        left_(Clock::now() + std::max<std::chrono::milliseconds>(drain, std::chrono::seconds(1)) * 7 / 8),
+        over_(Clock::now() + std::max(drain, std::chrono::seconds(1))),
+        last_resort_([this](const std::stop_token& stop) { end_when_over(stop); }) {}
+
+  Clock::time_point drained() const { return drained_; }  ///< running solves are cancelled
+  Clock::time_point left() const { return left_; }        ///< those that do not hear it are left
+
+ private:
+  void end_when_over(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    wake_.wait_until(lock, stop, over_, [] { return false; });
+    if (!stop.stop_requested()) std::_Exit(exit_done);
+  }
+
+  const Clock::time_point drained_, left_, over_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread last_resort_;
+};
+
 /// Takes no more solves, and lets the running ones end as long as there is time and no second signal.
-void drain(Scheduler& scheduler, const StopSignals& signals, std::chrono::seconds time) {
+void drain(Scheduler& scheduler, const StopSignals& signals, Clock::time_point until) {
   constexpr std::chrono::milliseconds between_looks{50};
-  spdlog::info("draining: running solves may end within {} s (--drain-seconds)", time.count());
   scheduler.drain();
-  const auto until = std::chrono::steady_clock::now() + time;
-  while (std::chrono::steady_clock::now() < until && !signals.take()) {
+  while (Clock::now() < until && !signals.take()) {
     if (scheduler.wait_until_idle(between_looks)) return;
   }
+}
+
+/// Ends the process if a solve does not hear that it is cancelled.
+void end_solves(Scheduler& scheduler, Clock::time_point until) {
+  scheduler.cancel_running();
+  const auto time = std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now());
+  if (scheduler.wait_until_idle(std::max(time, std::chrono::milliseconds(0)))) return;
+  scheduler.leave_running();
+  spdlog::warn("stopped while solves ran");
+  std::_Exit(exit_done);
 }
 
 void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<bool>& failed) {
@@ -88,10 +136,13 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
     StopSignals::raise();
   });
   spdlog::info("listening on {}", url(config.host, listener.port()));
-  signals.wait();
-  drain(scheduler, signals, std::chrono::seconds(config.drain_seconds));
+  signals.wait([&access] { read_tokens_again(access.tokens); });
+  const Deadline deadline{std::chrono::seconds(config.drain_seconds)};
+  spdlog::info("draining: the service ends within {} s (--drain-seconds)", config.drain_seconds);
+  drain(scheduler, signals, deadline.drained());
   spdlog::info("stopping");
   signals.leave();
+  end_solves(scheduler, deadline.left());
   // Solves first: clients that wait for one are answered before their connections close.
   scheduler.stop();
   events.stop();

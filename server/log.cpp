@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include "server/jobs/job.hpp"
 #include "server/json_text.hpp"
+#include "server/standard_error.hpp"
 
 namespace signorini::server {
 namespace {
@@ -75,8 +75,7 @@ std::unique_ptr<spdlog::formatter> formatter(const std::string& format) {
 }  // namespace
 
 void start_log(const std::string& level, const std::string& format) {
-  const auto logger =
-      std::make_shared<spdlog::logger>("signorinid", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  const auto logger = std::make_shared<spdlog::logger>("signorinid", std::make_shared<StandardError>());
   logger->set_formatter(formatter(format));
   logger->set_level(spdlog::level::from_str(level));
   spdlog::set_default_logger(logger);

@@ -7,7 +7,8 @@
 namespace signorini::server {
 
 /// One line an event on standard error, in UTC, from this level on. `format` is `text` (time, level, fields
-/// as name=value, message) or `json` (an object a line: `time`, `level`, `message`, the fields).
+/// as name=value, message) or `json` (an object a line: `time`, `level`, `message`, the fields). Nobody waits
+/// for who reads them: what is not read in time is lost, and a line says how much.
 void start_log(const std::string& level, const std::string& format = "text");
 
 /// A field of every line that this thread writes while the object lives, such as the job that it works on. Of

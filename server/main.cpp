@@ -1,3 +1,4 @@
+#include "server/check_command.hpp"
 #include "server/config.hpp"
 #include "server/cores.hpp"
 #include "server/daemon.hpp"
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   if (line.exit_code) return *line.exit_code;
   start_log(line.config.log_level, line.config.log_format);
   if (line.config.health) return run_health(line.config.daemon);
+  if (line.config.check) return run_check(*line.config.check);
   if (line.config.study) return run_study_command(*line.config.study);
   return line.config.solve ? run_solve(*line.config.solve) : run_daemon(line.config.daemon);
 }

@@ -1,5 +1,6 @@
 #include "server/signals.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 
@@ -9,29 +10,42 @@
 namespace signorini::server {
 namespace {
 
-/// Those that have arrived and were not waited for.
+/// Raised by each that arrives.
 sem_t arrived;
+/// Those that were not taken.
+std::atomic<int> stops, hangups;
+static_assert(std::atomic<int>::is_always_lock_free, "for a handler");
 
-sigset_t stop_signals() {
+sigset_t taken_signals() {
   sigset_t set;
   sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, signal);
   return set;
 }
 
-void note_arrival(int) {
+void note_arrival(int signal) {
   const int before = errno;
+  ++(signal == SIGHUP ? hangups : stops);
   sem_post(&arrived);
   errno = before;
 }
 
-void handle(void (*handler)(int)) {
+/// The default would do nothing to the first process of a container.
+void end_at_once(int signal) {
+  ::_exit(128 + signal);
+}
+
+void handle(int signal, void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  sigaction(signal, &action, nullptr);
+}
+
+bool take_one(std::atomic<int>& count) {
+  for (int there = count; there > 0;)
+    if (count.compare_exchange_weak(there, there - 1)) return true;
+  return false;
 }
 
 }  // namespace
@@ -39,23 +53,27 @@ void handle(void (*handler)(int)) {
 // A handler, for blocking them is not enough: OpenBLAS starts its threads before main().
 StopSignals::StopSignals() {
   sem_init(&arrived, 0, 0);
-  handle(note_arrival);
-  const sigset_t set = stop_signals();
+  stops = hangups = 0;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, note_arrival);
+  const sigset_t set = taken_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-void StopSignals::wait() const {
-  const sigset_t set = stop_signals();
+void StopSignals::wait(const std::function<void()>& on_hangup) const {
+  const sigset_t set = taken_signals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
-  while (sem_wait(&arrived) != 0) continue;
+  while (!take_one(stops)) {
+    if (take_one(hangups)) on_hangup();
+    while (sem_wait(&arrived) != 0) continue;
+  }
 }
 
 bool StopSignals::take() const {
-  return sem_trywait(&arrived) == 0;
+  return take_one(stops);
 }
 
 void StopSignals::leave() const {
-  handle(SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM}) handle(signal, end_at_once);
 }
 
 void StopSignals::raise() {

@@ -15,8 +15,9 @@ struct Access {
   /// Throws HttpError 429 if the client asks too often.
   void count(const Request& request);
 
-  /// Throws HttpError 401 if the client does not show a token.
-  void require_token(const Request& request) const;
+  /// Who sends it, if it may do so. Throws HttpError 401 if no token is shown, 403 if it is not for this
+  /// scope, and 429 if its name asks too often.
+  Identity require(const Request& request, Scope scope) const;
 };
 
 /// Whether a host is reached from this machine only: `localhost`, 127.0.0.0/8 and ::1.

@@ -27,25 +27,31 @@ const std::string& id_of(const Request& request) {
 HttpError unknown_solve() {
   return {404,
           {"unknown-solve", "Unknown solve",
-           "There is no solve with this id; it may have been deleted, or dropped to keep within --keep-bytes "
-           "or --keep-seconds."}};
+           "There is no solve with this id that this client may see; it may have been deleted, or dropped to keep "
+           "within --keep-bytes or --keep-seconds."}};
 }
 
 Job find_job(Service& service, const Request& request) {
   std::optional<Job> job = service.store.find(id_of(request));
-  if (!job) throw unknown_solve();
+  if (!job || !request.identity.may_see_those_of(job->owner)) throw unknown_solve();
   return std::move(*job);
 }
 
-JobWithResult find_job_with_result(Service& service, const Request& request) {
+Job find_solved(Service& service, const Request& request) {
   Job job = find_job(service, request);
   if (!job.verdict.summary) throw without_result(job);
-  return with_result(service, std::move(job));
+  return job;
+}
+
+JobWithResult find_job_with_result(Service& service, const Request& request) {
+  return with_result(service, find_solved(service, request));
 }
 
 JobWithResult with_result(Service& service, Job job) {
   std::optional<JobResult> result = service.store.result(job.id);
   if (!result) throw unknown_solve();
+  // What is stored may turn out to be damaged when it is read.
+  if (job.verdict.summary && !result->solution) throw without_result(service.store.find(job.id).value_or(job));
   return {std::move(job), std::move(*result)};
 }
 

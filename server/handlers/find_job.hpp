@@ -14,7 +14,7 @@ const std::string& id_of(const Request& request);
 /// 404: there is no solve with this id.
 HttpError unknown_solve();
 
-/// The job of the path. Throws HttpError 404.
+/// The job of the path. Throws HttpError 404, also for a job of somebody else.
 Job find_job(Service& service, const Request& request);
 
 struct JobWithResult {
@@ -22,10 +22,13 @@ struct JobWithResult {
   JobResult result;
 };
 
-/// The same, with a solution. Throws HttpError 404, 409 if it has not ended, 410 if it ended without one.
+/// The same, if it has a solution. Throws HttpError 404, 409 if it has not ended, 410 if it ended without one.
+Job find_solved(Service& service, const Request& request);
+
 JobWithResult find_job_with_result(Service& service, const Request& request);
 
-/// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile.
+/// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile, 410 if what was
+/// stored is damaged.
 JobWithResult with_result(Service& service, Job job);
 
 }  // namespace signorini::server

@@ -14,7 +14,8 @@ Response readyz(Service& service, const Request&) {
                     {{"Retry-After", "10"}});
   }
   if (const auto trouble = service.store.trouble()) throw StoreUnavailable(*trouble);
-  return Response::json(200, "{\"status\":\"ready\"}");
+  return Response::json(
+      200, "{\"status\":\"ready\",\"damaged_solves\":" + std::to_string(service.store.damaged()) + "}");
 }
 
 }  // namespace signorini::server

@@ -13,8 +13,10 @@ using Families = std::vector<prometheus::MetricFamily>;
 /// How many solves there are of each status; none while the store cannot say.
 Families solve_families(const JobStore& store) {
   JobCounts counts;
+  std::size_t damaged = 0;
   try {
     counts = store.count();
+    damaged = store.damaged();
   } catch (const StoreUnavailable&) {
     return {};
   }
@@ -22,7 +24,9 @@ Families solve_families(const JobStore& store) {
   for (const JobStatus status : all_statuses)
     samples.push_back({static_cast<double>(counts[status]), "status", name(status)});
   return {gauge("signorini_solves", "Solves that are kept, by status; those that are queued are the queue.",
-                samples)};
+                samples),
+          gauge("signorini_damaged_solves", "Failed solves of which what is stored is damaged.",
+                {{static_cast<double>(damaged)}})};
 }
 
 Families operator_families(const OperatorFigures& figures) {

@@ -72,11 +72,32 @@ Response result_response(const Request& request, JobWithResult ended, const api:
                       });
 }
 
+/// The summary stands in the status: where nothing else is picked, no result is read.
+bool picks_summary_alone(const Request& request) {
+  return parameter(request.query, "fields") == "summary";
+}
+
+JobWithResult with_summary(Job job) {
+  Solution solution;
+  solution.summary = *job.verdict.summary;
+  JobResult result{std::make_shared<const std::string>(),
+                   std::make_shared<const Solution>(std::move(solution)), nullptr};
+  return {std::move(job), std::move(result)};
+}
+
 HttpError key_reused(const std::string& key, const KeyReused& reused) {
   return {422,
           {"idempotency-key-reused", "The idempotency key belongs to another problem",
            "The Idempotency-Key `" + key + "` came with another body before; its solve is " +
                link_to(reused.job) + ". Take a new key for a new problem."}};
+}
+
+HttpError share_used_up(const std::string& name, std::size_t limit) {
+  return {
+      429,
+      {"share-used-up", "The share of the queue is used up",
+       std::to_string(limit) + " solves of `" + name + "` are waiting, which is its limit (--token-file)."},
+      {{"Retry-After", "5"}}};
 }
 
 /// Queues the problem and returns the id of its job, or of the earlier one with the same key and problem.
@@ -90,9 +111,16 @@ std::string submit(Service& service, const Request& request, Intake intake,
   job.key = key;
   job.predicted_memory = intake.memory();
   if (request.trace) job.trace = request.trace->id;
+  job.owner = request.identity.name;
+  job.share = request.identity.share;
+  const std::string new_id = job.id;
   try {
-    return service.scheduler.submit(std::move(job));
+    std::string id = service.scheduler.submit(std::move(job));
+    const LogField field("job", id);
+    if (id == new_id) spdlog::info("accepted");
+    return id;
   } catch (const QueueFull& full) {
+    if (full.share) throw share_used_up(request.identity.name, full.limit);
     throw unavailable("queue-full", "The queue is full",
                       std::to_string(full.limit) + " solves are waiting, which is the limit (--queue-limit).",
                       "5");
@@ -124,7 +152,9 @@ Response answer_after_wait(Service& service, const Request& request, Job job,
                            const api::ResultFields& fields) {
   if (!has_ended(job.status)) return status_response(service, request, 202, std::move(job));
   if (!job.verdict.summary) return status_response(service, request, 200, std::move(job));
-  return result_response(request, with_result(service, std::move(job)), fields);
+  JobWithResult ended =
+      picks_summary_alone(request) ? with_summary(std::move(job)) : with_result(service, std::move(job));
+  return result_response(request, std::move(ended), fields);
 }
 
 /// The job when it has ended or the time is over. A client that leaves before takes its solve along if it
@@ -151,6 +181,7 @@ JobStatus status_of_name(const std::string& status_name) {
 ListQuery list_query(const Request& request) {
   allow_only(request.query, {"status", "limit", "after"});
   ListQuery query;
+  if (!request.identity.sees_all()) query.owner = request.identity.name;
   if (const auto status = parameter(request.query, "status")) query.status = status_of_name(*status);
   if (const auto limit = integer_parameter(request.query, "limit", 1, 1000)) {
     query.limit = static_cast<std::size_t>(*limit);
@@ -208,6 +239,8 @@ Response get_solve(Service& service, const Request& request) {
 Response get_result(Service& service, const Request& request) {
   allow_only(request.query, {"fields"});
   const api::ResultFields fields = fields_of(request);
+  if (picks_summary_alone(request))
+    return result_response(request, with_summary(find_solved(service, request)), fields);
   JobWithResult ended = find_job_with_result(service, request);
   require_available(fields, ended.result.solution->components);
   return result_response(request, std::move(ended), fields);
@@ -234,10 +267,12 @@ Response delete_solve(Service& service, const Request& request) {
   allow_only(request.query, {});
   Response response = Response::empty(204);
   response.job = id_of(request);
+  const LogField job("job", find_job(service, request).id);
   switch (service.scheduler.dismiss(id_of(request))) {
     case Dismissal::unknown:
       throw unknown_solve();
     case Dismissal::removed:
+      spdlog::info("deleted");
       return response;
     case Dismissal::cancelled:
     case Dismissal::cancelling:

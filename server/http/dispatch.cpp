@@ -1,7 +1,9 @@
 #include "server/http/dispatch.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string_view>
 
 #include <spdlog/spdlog.h>
 
@@ -30,9 +32,15 @@ Response answer(const Router& router, Request& request) {
   }
 }
 
-/// A client chooses these bytes: they must not start a line of their own or fill the log.
+/// A client chooses these bytes: they must not start a line of their own, fill the log, or tell a token that was
+/// sent where none belongs (RFC 6750, 2.3).
 std::string for_log(std::string text) {
   constexpr std::size_t longest = 200;
+  constexpr std::string_view token = "access_token=";
+  for (std::size_t at = 0; (at = text.find(token, at)) != std::string::npos;) {
+    at += token.size();
+    text.replace(at, std::min(text.find('&', at), text.size()) - at, "***");
+  }
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
   for (char& c : text) {
     if (c < 0x21 || c > 0x7e) c = '?';
@@ -64,6 +72,8 @@ void finish_reply(const Router& router, const Request& request, Response& respon
   const LogField status("status", std::int64_t{response.status});
   std::optional<LogField> job;
   if (!response.job.empty()) job.emplace("job", response.job);
+  std::optional<LogField> client;
+  if (!request.identity.name.empty()) client.emplace("client", request.identity.name);
   const LogField milliseconds("ms", std::round(time.count() * 1e4) / 10);
   spdlog::info("answered");
   router.replied(request, response, time);

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/access/identity.hpp"
 #include "server/http/trace.hpp"
 
 namespace signorini::server {
@@ -24,6 +25,7 @@ using BodyReader = std::function<std::string(std::size_t max_bytes)>;
 /// One request, free of the HTTP library.
 struct Request {
   std::string remote_address;  ///< of the client, or of the proxy before it
+  Identity identity;           ///< who sends it; by the router
   std::string id;              ///< X-Request-Id, of the client or made here
   std::optional<Trace> trace;  ///< if the client sent a traceparent
   std::string method;

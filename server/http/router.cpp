@@ -5,6 +5,7 @@
 
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
+#include "server/log.hpp"
 
 namespace signorini::server {
 namespace {
@@ -48,6 +49,18 @@ HttpError not_acceptable(const Route& route) {
            "This path answers with " + list + ", which the Accept header excludes."}};
 }
 
+/// What the lines of a handler say of who sends the request.
+class SenderFields {
+ public:
+  explicit SenderFields(const Request& request) : address_("address", request.remote_address) {
+    if (!request.identity.name.empty()) name_.emplace("client", request.identity.name);
+  }
+
+ private:
+  LogField address_;
+  std::optional<LogField> name_;
+};
+
 /// The media type of the reply. Throws HttpError 406.
 std::string negotiate(const Request& request, const Route& route) {
   if (route.media_types.empty()) return {};
@@ -86,10 +99,13 @@ Response Router::route(Request& request) const {
   const Audience audience = found == nullptr ? Audience::clients : found->audience;
   if (audience != Audience::probes) access_.count(request);
   if (!allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(allow);
-  if (audience == Audience::clients) access_.require_token(request);
+  // What does not look only, changes something or costs time.
+  const Scope scope = method == "GET" || method == "OPTIONS" ? Scope::read : Scope::solve;
+  if (audience == Audience::clients) request.identity = access_.require(request, scope);
   if (allow.empty()) throw HttpError(404, details_of_status(404));
   if (found == nullptr) throw method_not_allowed(request.method, allow);
   request.reply_type = negotiate(request, *found);
+  const SenderFields sender(request);
   return found->handler(request);
 }
 

@@ -16,6 +16,7 @@ class DataDir {
   DataDir& operator=(const DataDir&) = delete;
 
   std::filesystem::path database() const { return path_ / "jobs.sqlite"; }
+  std::filesystem::path reserve() const { return path_ / "reserve"; }
 
  private:
   std::filesystem::path path_;

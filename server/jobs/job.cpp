@@ -74,6 +74,20 @@ Ending cancelled_ending(const std::string& detail) {
   return ending;
 }
 
+Ending damaged_ending(const std::string& what) {
+  Ending ending;
+  ending.error = ProblemDetails{"damaged", "What was stored of the solve is damaged",
+                                "Its " + what +
+                                    " in the data directory is not what was written there. Send the problem "
+                                    "again; `signorinid check` with "
+                                    "the directory (--data-dir) looks through all that is stored."};
+  return ending;
+}
+
+bool is_damaged(const Ending& ending) {
+  return ending.error && ending.error->kind == "damaged";
+}
+
 Verdict verdict_of(const Ending& ending) {
   Verdict verdict;
   verdict.error = ending.error;

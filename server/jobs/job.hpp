@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/jobs/share.hpp"
 #include "server/problem_details.hpp"
 #include "solution.hpp"
 
@@ -39,6 +40,10 @@ struct Ending {
 /// A job was cancelled while it waited, or while it ran in a process that then died.
 Ending cancelled_ending(const std::string& detail);
 
+/// What is stored of a job is not what was written: its `what`, such as `problem`.
+Ending damaged_ending(const std::string& what);
+bool is_damaged(const Ending& ending);
+
 /// An ending without its fields: as much of it as a status document tells.
 struct Verdict {
   std::optional<ProblemDetails> error;
@@ -57,6 +62,8 @@ struct NewJob {
   std::optional<std::string> key;  ///< by which the client tells a repeated request from a new one
   double predicted_memory = 0;     ///< bytes that its solve will take, about
   std::string trace;               ///< id of the trace of the request (W3C Trace Context); empty: none
+  std::string owner;               ///< the name of who sent it; empty where there are no names
+  Share share = {};                ///< of the owner
 };
 
 /// One solve from its acceptance on, without the texts and the fields that belong to it.
@@ -65,6 +72,7 @@ struct Job {
   JobStatus status = JobStatus::queued;
   std::string title;
   std::string trace;  ///< as in NewJob
+  std::string owner;  ///< as in NewJob
   Time created;
   std::optional<Time> started;
   std::optional<Time> finished;

@@ -8,40 +8,53 @@
 
 namespace signorini::server {
 
-void MemoryBudget::admit(const std::string& job, double bytes) {
-  const std::lock_guard lock(mutex_);
-  bytes_[job] = bytes;
-  const double together = largest();
-  if (together <= max_bytes_) return;
-  bytes_.erase(job);
+namespace {
+
+MemoryFull full(double bytes, double together, double limit, const std::string& whose,
+                const std::string& flag) {
   std::ostringstream text;
   text.precision(3);
   text << "The problem would take about " << bytes / 1e9 << " GB of memory, and " << together / 1e9
-       << " GB together with the largest solves that may run at the same time; the limit is "
-       << max_bytes_ / 1e9 << " GB (--max-memory). Try again when they have ended, or take a coarser mesh.";
-  throw MemoryFull(text.str());
+       << " GB together with the largest solves" << whose << " that may run at the same time; the limit is "
+       << limit / 1e9 << " GB (" << flag << "). Try again when they have ended, or take a coarser mesh.";
+  return MemoryFull(text.str());
 }
 
-void MemoryBudget::add(const std::string& job, double bytes) {
+}  // namespace
+
+void MemoryBudget::admit(const std::string& job, double bytes, const std::string& owner,
+                         const std::optional<double>& share) {
   const std::lock_guard lock(mutex_);
-  bytes_[job] = bytes;
+  taken_[job] = {bytes, owner};
+  const double together = largest();
+  const double of_owner = share ? largest(owner) : 0;
+  if (together <= max_bytes_ && (!share || of_owner <= *share)) return;
+  taken_.erase(job);
+  if (together > max_bytes_) throw full(bytes, together, max_bytes_, "", "--max-memory");
+  throw full(bytes, of_owner, *share, " of `" + owner + "`", "memory= in the token file");
+}
+
+void MemoryBudget::add(const std::string& job, double bytes, const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  taken_[job] = {bytes, owner};
 }
 
 bool MemoryBudget::knows(const std::string& job) const {
   const std::lock_guard lock(mutex_);
-  return bytes_.contains(job);
+  return taken_.contains(job);
 }
 
 void MemoryBudget::release(const std::string& job) {
   const std::lock_guard lock(mutex_);
-  bytes_.erase(job);
+  taken_.erase(job);
 }
 
-/// Of as many jobs as may run, the largest ones.
-double MemoryBudget::largest() const {
+/// Of as many jobs as may run, those of one owner if one is given, the largest ones.
+double MemoryBudget::largest(const std::optional<std::string>& owner) const {
   std::vector<double> all;
-  all.reserve(bytes_.size());
-  for (const auto& [job, bytes] : bytes_) all.push_back(bytes);
+  all.reserve(taken_.size());
+  for (const auto& [job, taken] : taken_)
+    if (!owner || taken.owner == *owner) all.push_back(taken.bytes);
   const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(workers_, all.size()));
   std::partial_sort(all.begin(), end, all.end(), std::greater<>());
   return std::accumulate(all.begin(), end, 0.0);

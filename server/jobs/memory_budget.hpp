@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -19,22 +20,29 @@ class MemoryBudget {
  public:
   MemoryBudget(double max_bytes, std::size_t workers) : max_bytes_(max_bytes), workers_(workers) {}
 
-  /// Throws MemoryFull if the job could come to run with others that leave too little.
-  void admit(const std::string& job, double bytes);
+  /// Throws MemoryFull if the job could come to run with others that leave too little, or too little of the
+  /// `share` of its owner, if there is one.
+  void admit(const std::string& job, double bytes, const std::string& owner = {},
+             const std::optional<double>& share = std::nullopt);
 
   /// Counts a job that was admitted elsewhere.
-  void add(const std::string& job, double bytes);
+  void add(const std::string& job, double bytes, const std::string& owner = {});
 
   bool knows(const std::string& job) const;
   void release(const std::string& job);
 
  private:
-  double largest() const;
+  struct Taken {
+    double bytes = 0;
+    std::string owner;
+  };
+
+  double largest(const std::optional<std::string>& owner = std::nullopt) const;
 
   const double max_bytes_;
   const std::size_t workers_;
   mutable std::mutex mutex_;
-  std::map<std::string, double> bytes_;  ///< by job
+  std::map<std::string, Taken> taken_;  ///< by job
 };
 
 }  // namespace signorini::server

@@ -13,23 +13,39 @@ MemoryStore::MemoryStore(const StoreLimits& limits) : limits_(limits) {}
 std::string MemoryStore::add(NewJob job) {
   const std::lock_guard lock(mutex_);
   if (job.key) {
-    const auto earlier = keys_.find(*job.key);
-    if (earlier != keys_.end()) {
-      if (*entries_.at(earlier->second).result.problem == *job.problem) return earlier->second;
-      throw KeyReused(earlier->second);
-    }
+    if (auto earlier = job_with_key({job.owner, *job.key}, *job.problem)) return *std::move(earlier);
   }
   if (queue_.size() >= limits_.queue) throw QueueFull(limits_.queue);
-  if (job.key) keys_[*job.key] = job.id;
+  if (job.share.queue && queued(job.owner) >= *job.share.queue) throw QueueFull(*job.share.queue, true);
+  if (job.key) keys_[{job.owner, *job.key}] = job.id;
   queue_.push_back(job.id);
   Entry& entry = entries_[job.id];
   entry.job.id = std::move(job.id);
   entry.job.title = std::move(job.title);
   entry.job.trace = std::move(job.trace);
+  entry.job.owner = std::move(job.owner);
   entry.job.created = job.created;
   entry.result.problem = std::move(job.problem);
   entry.key = std::move(job.key);
   return entry.job.id;
+}
+
+std::optional<std::string> MemoryStore::earlier(const std::string& owner, const std::string& key,
+                                                const std::string& problem) {
+  const std::lock_guard lock(mutex_);
+  return job_with_key({owner, key}, problem);
+}
+
+std::optional<std::string> MemoryStore::job_with_key(const Key& key, const std::string& problem) const {
+  const auto found = keys_.find(key);
+  if (found == keys_.end()) return std::nullopt;
+  if (*entries_.at(found->second).result.problem != problem) throw KeyReused(found->second);
+  return found->second;
+}
+
+std::size_t MemoryStore::queued(const std::string& owner) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      queue_, [&](const std::string& id) { return entries_.at(id).job.owner == owner; }));
 }
 
 std::optional<Claim> MemoryStore::claim() {
@@ -86,7 +102,7 @@ bool MemoryStore::remove_ended(const std::string& id) {
   return true;
 }
 
-void MemoryStore::drop_expired() {
+void MemoryStore::tidy() {
   Removed removed;
   const std::lock_guard lock(mutex_);
   drop_beyond_limits(removed);
@@ -106,6 +122,7 @@ JobPage MemoryStore::list(const ListQuery& query) const {
   for (; next != entries_.rend(); ++next) {
     const Job& job = next->second.job;
     if (query.status && job.status != *query.status) continue;
+    if (query.owner && job.owner != *query.owner) continue;
     if (page.jobs.size() == query.limit) {
       page.more = true;
       break;
@@ -122,7 +139,7 @@ JobCounts MemoryStore::count() const {
   return counts;
 }
 
-std::optional<JobResult> MemoryStore::result(const std::string& id) const {
+std::optional<JobResult> MemoryStore::result(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(id);
   if (found == entries_.end()) return std::nullopt;
@@ -139,6 +156,7 @@ MemoryStore::Entry* MemoryStore::running(const Claim& claim) {
 void MemoryStore::end(Entry& entry, const Ending& ending, Removed& removed) {
   entry.job.status = ending.status;
   entry.job.finished = std::chrono::system_clock::now();
+  entry.ended = clock_.now();
   entry.job.verdict = verdict_of(ending);
   entry.result.solution = ending.solution;
   entry.result.history = ending.history;
@@ -149,8 +167,12 @@ void MemoryStore::end(Entry& entry, const Ending& ending, Removed& removed) {
 }
 
 void MemoryStore::drop_beyond_limits(Removed& removed) {
-  const Time oldest = std::chrono::system_clock::now() - limits_.keep;
-  while (!ended_.empty() && entries_.at(ended_.front()).job.finished < oldest) {
+  constexpr int most_at_once = 100;
+  const std::int64_t oldest =
+      clock_.now() - std::chrono::duration_cast<std::chrono::milliseconds>(limits_.keep).count();
+  const bool by_age = !clock_.holds();
+  for (int i = 0; by_age && i < most_at_once && !ended_.empty(); ++i) {
+    if (entries_.at(ended_.front()).ended >= oldest) break;
     drop_oldest_ended("--keep-seconds", removed);
   }
   while (ended_bytes_ > limits_.keep_bytes && ended_.size() > 1) drop_oldest_ended("--keep-bytes", removed);
@@ -167,7 +189,7 @@ void MemoryStore::remove(const std::string& id, Removed& removed) {
   removed.push_back(entries_.extract(id));
   const Entry& entry = removed.back().mapped();
   ended_bytes_ -= entry.bytes;
-  if (entry.key) keys_.erase(*entry.key);
+  if (entry.key) keys_.erase({entry.job.owner, *entry.key});
 }
 
 }  // namespace signorini::server

@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 
+#include "server/jobs/retention_clock.hpp"
 #include "server/jobs/store.hpp"
 
 namespace signorini::server {
@@ -14,16 +15,19 @@ class MemoryStore : public JobStore {
   explicit MemoryStore(const StoreLimits& limits);
 
   std::string add(NewJob job) override;
+  std::optional<std::string> earlier(const std::string& owner, const std::string& key,
+                                     const std::string& problem) override;
   std::optional<Claim> claim() override;
   bool finish(const Claim& claim, const Ending& ending) override;
   bool give_back(const Claim& claim) override;
   Cancellation cancel(const std::string& id) override;
   bool remove_ended(const std::string& id) override;
-  void drop_expired() override;
+  void tidy() override;
   std::optional<Job> find(const std::string& id) const override;
   JobPage list(const ListQuery& query) const override;
   JobCounts count() const override;
-  std::optional<JobResult> result(const std::string& id) const override;
+  std::optional<JobResult> result(const std::string& id) override;
+  std::size_t damaged() const override { return 0; }
   std::optional<std::string> trouble() override { return std::nullopt; }
   bool outlives_process() const override { return false; }
 
@@ -34,13 +38,18 @@ class MemoryStore : public JobStore {
     std::optional<std::string> key;
     std::uint64_t attempt = 0;
     bool cancel_asked = false;
-    std::size_t bytes = 0;  ///< counted when the job ended
+    std::size_t bytes = 0;   ///< counted when the job ended
+    std::int64_t ended = 0;  ///< by the clock of retention
   };
   using Entries = std::map<std::string, Entry>;
 
   /// Jobs that no longer stand in the map; their memory is freed after the lock is.
   using Removed = std::vector<Entries::node_type>;
 
+  using Key = std::pair<std::string, std::string>;  ///< of an owner
+
+  std::optional<std::string> job_with_key(const Key& key, const std::string& problem) const;
+  std::size_t queued(const std::string& owner) const;
   Entry* running(const Claim& claim);
   void end(Entry& entry, const Ending& ending, Removed& removed);
   void drop_beyond_limits(Removed& removed);
@@ -50,10 +59,11 @@ class MemoryStore : public JobStore {
   const StoreLimits limits_;
 
   mutable std::mutex mutex_;
-  Entries entries_;                          ///< by id, which is by age
-  std::deque<std::string> queue_;            ///< ids, next first
-  std::deque<std::string> ended_;            ///< ids in the order in which they ended
-  std::map<std::string, std::string> keys_;  ///< the id of the job with this key
+  Entries entries_;                  ///< by id, which is by age
+  std::deque<std::string> queue_;    ///< ids, next first
+  std::deque<std::string> ended_;    ///< ids in the order in which they ended
+  std::map<Key, std::string> keys_;  ///< the id of the job with this key
+  RetentionClock clock_;
   std::size_t ended_bytes_ = 0;
 };
 

@@ -92,6 +92,7 @@ Ending ending_of(Solution solution) {
 }
 
 Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live) {
+  if (!claim.problem) return damaged_ending("problem");
   try {
     const api::Request request = api::parse_request(*claim.problem);
     return ending_of(solve(request, live));

@@ -17,6 +17,17 @@ using namespace std::chrono_literals;
 constexpr auto idle_time = 1s;   // a store that failed is asked again, and what expired is dropped
 constexpr auto retry_time = 1s;  // between two tries to keep an ending
 constexpr auto patience_with_store = 60s;
+
+/// While some wait for the disk with small results, others solve.
+int threads_for(int workers) {
+  return workers + std::min(3 * workers, 12);
+}
+
+constexpr std::size_t small_result = std::size_t{4} << 20;
+
+bool is_small(const Ending& ending) {
+  return memory_of({nullptr, ending.solution, ending.history}) <= small_result;
+}
 constexpr auto time_to_give_up = 100ms;  // how soon it is noticed that nobody waits any more
 
 Ending result_not_kept() {
@@ -54,8 +65,9 @@ Scheduler::Scheduler(JobStore& store, SolveFunction solve, int workers, double m
       solve_(std::move(solve)),
       observer_(std::move(observer)),
       memory_(max_memory, static_cast<std::size_t>(workers)),
-      working_(workers) {
-  for (int i = 0; i < workers; ++i) threads_.emplace_back(&Scheduler::work, this);
+      working_(threads_for(workers)),
+      places_(workers) {
+  for (int i = 0; i < threads_for(workers); ++i) threads_.emplace_back(&Scheduler::work, this);
 }
 
 Scheduler::~Scheduler() {
@@ -63,11 +75,15 @@ Scheduler::~Scheduler() {
 }
 
 std::string Scheduler::submit(NewJob job) {
+  // One that is there already takes nothing more.
+  if (job.key) {
+    if (auto earlier = store_.earlier(job.owner, *job.key, *job.problem)) return *std::move(earlier);
+  }
   // So that no job is queued after stop() has emptied the queue.
   const std::shared_lock admitted(admission_);
   if (!accepting()) throw Stopping();
   const std::string new_id = job.id;
-  memory_.admit(new_id, job.predicted_memory);
+  memory_.admit(new_id, job.predicted_memory, job.owner, job.share.memory);
   std::string id;
   try {
     id = store_.add(std::move(job));
@@ -80,7 +96,7 @@ std::string Scheduler::submit(NewJob job) {
     const std::lock_guard lock(mutex_);
     ++submissions_;
   }
-  queued_.notify_one();
+  queued_.notify_all();
   return id;
 }
 
@@ -110,8 +126,8 @@ std::shared_ptr<const Watch> Scheduler::watch(const std::string& id) {
   std::weak_ptr<Watch>& place = watches_[id];
   if (std::shared_ptr<Watch> watch = place.lock()) return watch;
   const auto watch = std::make_shared<Watch>();
-  const auto running = live_.find(id);
-  if (running != live_.end()) watch->begin(running->second);
+  const auto running = running_.find(id);
+  if (running != running_.end()) watch->begin(running->second.live);
   place = watch;
   return watch;
 }
@@ -143,14 +159,14 @@ std::optional<Dismissal> Scheduler::try_to_cancel(const std::string& id) {
     spdlog::info("cancelled while queued");
     return Dismissal::cancelled;
   }
-  if (cancellation == Cancellation::asked && cancel_running(id)) return Dismissal::cancelling;
+  if (cancellation == Cancellation::asked && cancel_live(id)) return Dismissal::cancelling;
   return std::nullopt;
 }
 
 std::shared_ptr<const LiveSolve> Scheduler::live(const std::string& id) const {
   const std::lock_guard lock(mutex_);
-  const auto found = live_.find(id);
-  return found == live_.end() ? nullptr : found->second;
+  const auto found = running_.find(id);
+  return found == running_.end() ? nullptr : found->second.live;
 }
 
 bool Scheduler::accepting() const {
@@ -166,6 +182,7 @@ void Scheduler::drain() {
   }
   if (!store_.outlives_process()) cancel_all_queued();
   queued_.notify_all();
+  place_.notify_all();
 }
 
 bool Scheduler::wait_until_idle(std::chrono::milliseconds time) {
@@ -173,14 +190,34 @@ bool Scheduler::wait_until_idle(std::chrono::milliseconds time) {
   return ended_.wait_for(lock, time, [&] { return working_ == 0; });
 }
 
-void Scheduler::stop() {
+void Scheduler::cancel_running() {
   drain();
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
-    for (const auto& [id, live] : live_) live->cancel();
+    for (const auto& [id, running] : running_) running.live->cancel();
   }
   queued_.notify_all();
+}
+
+void Scheduler::leave_running() {
+  std::map<std::string, Running> running;
+  {
+    const std::lock_guard lock(mutex_);
+    running = running_;
+  }
+  for (const auto& [id, each] : running) {
+    const LogField job("job", id);
+    try {
+      if (store_.give_back(each.claim)) spdlog::warn("queued again for the next start, for it does not end");
+    } catch (const std::exception& error) {
+      spdlog::error("could not be queued again: {}", error.what());
+    }
+  }
+}
+
+void Scheduler::stop() {
+  cancel_running();
   const std::lock_guard joining(joining_);
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
@@ -212,17 +249,28 @@ void Scheduler::run_to_end(const Running& running) {
   const Ending ending = run(claim, solve_, *running.live);
   log_end(claim, ending);
   observer_(claim.job, ending);
+  const bool small = is_small(ending);
+  if (small) give_place();
   keep(claim, ending);
   announce_end(claim.job.id);
+  if (!small) give_place();
+}
+
+void Scheduler::give_place() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++places_;
+  }
+  place_.notify_one();
 }
 
 /// Those that an earlier process accepted are counted from their start on.
 void Scheduler::count_memory(const Claim& claim) {
-  if (memory_.knows(claim.job.id)) return;
+  if (memory_.knows(claim.job.id) || !claim.problem) return;
   try {
     const api::Request request = api::parse_request(*claim.problem);
     const auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
-    memory_.add(claim.job.id, predicted_memory(estimate(request.problem), runs));
+    memory_.add(claim.job.id, predicted_memory(estimate(request.problem), runs), claim.job.owner);
   } catch (const std::exception&) {
     // The run says what is wrong with the problem.
   }
@@ -230,7 +278,10 @@ void Scheduler::count_memory(const Claim& claim) {
 
 std::optional<Scheduler::Running> Scheduler::next() {
   std::unique_lock lock(mutex_);
-  while (!draining_) {
+  for (;;) {
+    place_.wait(lock, [&] { return draining_ || places_ > 0; });
+    if (draining_) return std::nullopt;
+    --places_;
     const std::uint64_t submissions = submissions_;
     lock.unlock();
     std::optional<Claim> claim = try_to_claim();
@@ -238,19 +289,20 @@ std::optional<Scheduler::Running> Scheduler::next() {
     if (claim) {
       const auto live = std::make_shared<LiveSolve>(*claim->job.started);
       if (stopping_) live->cancel();
-      live_[claim->job.id] = live;
       if (const auto watch = watch_of(claim->job.id)) watch->begin(live);
-      return Running{std::move(*claim), live};
+      const Running running{std::move(*claim), live};
+      running_[running.claim.job.id] = running;
+      return running;
     }
     queued_.wait_for(lock, idle_time, [&] { return draining_ || submissions_ != submissions; });
+    ++places_;
   }
-  return std::nullopt;
 }
 
 std::optional<Claim> Scheduler::try_to_claim() {
   try {
     std::optional<Claim> claim = store_.claim();
-    if (!claim) store_.drop_expired();
+    if (!claim) store_.tidy();
     return claim;
   } catch (const StoreUnavailable&) {
     return std::nullopt;
@@ -301,7 +353,7 @@ void Scheduler::announce_end(const std::string& id) {
   memory_.release(id);
   {
     const std::lock_guard lock(mutex_);
-    live_.erase(id);
+    running_.erase(id);
     if (const auto watch = watch_of(id)) watch->end();
     watches_.erase(id);
   }
@@ -314,11 +366,11 @@ std::shared_ptr<Watch> Scheduler::watch_of(const std::string& id) const {
   return found == watches_.end() ? nullptr : found->second.lock();
 }
 
-bool Scheduler::cancel_running(const std::string& id) {
+bool Scheduler::cancel_live(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  const auto found = live_.find(id);
-  if (found == live_.end()) return false;
-  found->second->cancel();
+  const auto found = running_.find(id);
+  if (found == running_.end()) return false;
+  found->second.live->cancel();
   const LogField job("job", id);
   spdlog::info("cancelling");
   return true;

@@ -31,7 +31,8 @@ enum class Dismissal { unknown, cancelled, cancelling, removed };
 /// Told how each run of a job ended, before its end is kept.
 using EndObserver = std::function<void(const Job& job, const Ending& ending)>;
 
-/// Runs the jobs of a store on a fixed number of threads.
+/// Runs the jobs of a store, as many at a time as there are workers. One whose result is small gives its
+/// place to the next one before its end is on the disk.
 class Scheduler {
  public:
   /// The solves that run at the same time are to take no more than `max_memory` bytes together, as predicted.
@@ -43,8 +44,8 @@ class Scheduler {
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  /// The id that JobStore::add() returns. Throws what that throws, MemoryFull, and Stopping once drain() was
-  /// called.
+  /// The id that JobStore::add() returns. Throws what that throws, and for a new job MemoryFull, and Stopping
+  /// once drain() was called.
   std::string submit(NewJob job);
 
   /// The job when it has ended, or as it is when the time is over or `given_up`, which is asked now and then,
@@ -72,7 +73,13 @@ class Scheduler {
   /// Whether no job runs any more after drain(), waiting so long for it.
   bool wait_until_idle(std::chrono::milliseconds time);
 
-  /// Drains, ends the running jobs at their next check, and returns when every thread has ended.
+  /// Drains, and ends the running jobs at their next check.
+  void cancel_running();
+
+  /// Queues again what still runs, for the next process. Nothing may follow but the end of this one.
+  void leave_running();
+
+  /// cancel_running(), and returns when every thread has ended.
   /// What has not ended then waits in the store for the next process, or is cancelled if the store ends with
   /// this one. May be called again.
   void stop();
@@ -87,6 +94,7 @@ class Scheduler {
   void run_to_end(const Running& running);
   void count_memory(const Claim& claim);
   std::optional<Running> next();
+  void give_place();
   std::optional<Claim> try_to_claim();
   bool try_to_keep(const Claim& claim, const Ending& ending);
   void keep(const Claim& claim, const Ending& ending);
@@ -94,7 +102,7 @@ class Scheduler {
   void announce_end(const std::string& id);
   std::shared_ptr<Watch> watch_of(const std::string& id) const;
   std::optional<Dismissal> try_to_cancel(const std::string& id);
-  bool cancel_running(const std::string& id);
+  bool cancel_live(const std::string& id);
   void cancel_all_queued();
 
   JobStore& store_;
@@ -107,13 +115,15 @@ class Scheduler {
   // Never held while the store is asked, which may take as long as a disk does.
   mutable std::mutex mutex_;
   std::condition_variable queued_;  ///< a job was queued, or drain, or stop
+  std::condition_variable place_;   ///< there is one, or drain
   std::condition_variable ended_;   ///< a job ended, or a thread has
   bool draining_ = false;
   bool stopping_ = false;
   bool stopped_ = false;
   int working_;  ///< threads that have a job or would take one
+  int places_;   ///< solves that may begin
   std::uint64_t submissions_ = 0;
-  std::map<std::string, std::shared_ptr<LiveSolve>> live_;
+  std::map<std::string, Running> running_;               ///< by the id of the job
   std::map<std::string, std::weak_ptr<Watch>> watches_;  ///< by the id of the job; shared by all who watch it
 
   std::mutex joining_;

@@ -47,6 +47,35 @@ CREATE TABLE idempotency_keys (
 )sql",
     R"sql(
 ALTER TABLE jobs ADD COLUMN trace TEXT NOT NULL DEFAULT '';  -- of the request, for the log
+)sql",
+    // The schema is to stay on the first page, which cannot be lost without the rest.
+    R"sql(
+ALTER TABLE jobs ADD COLUMN owner TEXT NOT NULL DEFAULT '';      -- the name that its token has
+ALTER TABLE jobs ADD COLUMN ended INTEGER;                       -- by retention_clock.hpp
+ALTER TABLE jobs ADD COLUMN damaged INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN seal INTEGER;                        -- job_rows.hpp
+UPDATE jobs SET ended = finished;
+DROP INDEX jobs_by_end;
+CREATE INDEX jobs_by_end ON jobs (ended, id, bytes) WHERE ended IS NOT NULL;
+CREATE INDEX jobs_by_owner ON jobs (owner, id);
+CREATE INDEX jobs_damaged ON jobs (id) WHERE damaged;
+
+CREATE TABLE owned_keys (
+  owner TEXT NOT NULL,
+  key TEXT NOT NULL,
+  job TEXT NOT NULL UNIQUE REFERENCES jobs ON DELETE CASCADE,
+  PRIMARY KEY (owner, key)
+) STRICT, WITHOUT ROWID;
+INSERT INTO owned_keys SELECT '', key, job FROM idempotency_keys;
+DROP TABLE idempotency_keys;
+ALTER TABLE owned_keys RENAME TO idempotency_keys;
+
+CREATE TABLE state (
+  one INTEGER PRIMARY KEY CHECK (one = 1),
+  ended_bytes INTEGER NOT NULL,             -- of all jobs that have ended
+  retention INTEGER NOT NULL,               -- retention_clock.hpp
+  wall INTEGER NOT NULL
+) STRICT;
 )sql"};
 
 }  // namespace

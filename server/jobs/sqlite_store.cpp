@@ -1,11 +1,13 @@
 #include "server/jobs/sqlite_store.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cstdlib>
 
 #include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
+#include "server/jobs/job_rows.hpp"
+#include "server/jobs/repair.hpp"
 #include "server/jobs/schema.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "server/log.hpp"
@@ -14,110 +16,63 @@ namespace signorini::server {
 namespace {
 
 constexpr int attempts_allowed = 3;
-constexpr int busy_timeout_ms = 5000;
 constexpr std::size_t piece_bytes = std::size_t{64} << 20;
-
-/// The columns that job_of() reads.
-const std::string job_columns = "id, status, title, created, started, finished, verdict, trace";
-
-// --- between SQLite's values and ours
-
-struct Blob {
-  const std::string_view bytes;
-};
-
-void bind(SQLite::Statement& statement, int index, const Blob& blob) {
-  statement.bindNoCopy(index, blob.bytes.data(), static_cast<int>(blob.bytes.size()));
-}
-
-template <class Value>
-void bind(SQLite::Statement& statement, int index, const Value& value) {
-  statement.bind(index, value);
-}
-
-/// The statement with its values in the order of its question marks; blobs must outlive it.
-template <class... Values>
-SQLite::Statement prepared(const SQLite::Database& database, const std::string& sql,
-                           const Values&... values) {
-  SQLite::Statement statement(database, sql);
-  int index = 0;
-  (bind(statement, ++index, values), ...);
-  return statement;
-}
-
-std::int64_t milliseconds(Time time) {
-  return std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
-}
-
-std::int64_t now() {
-  return milliseconds(std::chrono::system_clock::now());
-}
-
-std::optional<Time> time_of(const SQLite::Column& column) {
-  if (column.isNull()) return std::nullopt;
-  return Time(std::chrono::milliseconds(column.getInt64()));
-}
-
-std::string bytes_of(const SQLite::Column& column) {
-  return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
-}
-
-Job job_of(const SQLite::Statement& row) {
-  Job job;
-  job.id = row.getColumn(0).getString();
-  job.status = job_status(row.getColumn(1).getString()).value();
-  job.title = row.getColumn(2).getString();
-  job.created = time_of(row.getColumn(3)).value();
-  job.started = time_of(row.getColumn(4));
-  job.finished = time_of(row.getColumn(5));
-  if (!row.isColumnNull(6)) job.verdict = unpack_verdict(bytes_of(row.getColumn(6)));
-  job.trace = row.getColumn(7).getString();
-  return job;
-}
-
-std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id) {
-  auto row = prepared(database, "SELECT text FROM problems WHERE job = ?", id);
-  if (!row.executeStep()) return nullptr;
-  return std::make_shared<const std::string>(unpack_text(bytes_of(row.getColumn(0))));
-}
+constexpr const char* disk_is_full = "the disk of the data directory is full";
 
 // --- what can go wrong
 
-/// In words, if it is the machine's fault and may pass; nothing if it is ours.
-std::optional<std::string> passing_reason(const SQLite::Exception& error) {
-  switch (error.getErrorCode()) {
-    case SQLITE_FULL:
-      return "the disk of the data directory is full";
-    case SQLITE_IOERR:
-    case SQLITE_CANTOPEN:
-    case SQLITE_READONLY:
-      return "the data directory cannot be written: " + std::string(error.getErrorStr());
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      return "another program holds the database in the data directory";
-    default:
-      return std::nullopt;
-  }
+/// What frees room may use the reserve then.
+class DiskFull : public StoreUnavailable {
+ public:
+  DiskFull() : StoreUnavailable(disk_is_full) {}
+};
+
+std::string damage_in_words(const SQLite::Exception& error) {
+  return "the database in the data directory is damaged (" + std::string(error.getErrorStr()) +
+         "): start the service again, which repairs it, or stop it and run `signorinid check` with the "
+         "directory";
 }
 
 /// Inside a handler of the error.
 [[noreturn]] void rethrow_as_unavailable(const SQLite::Exception& error) {
+  if (error.getErrorCode() == SQLITE_FULL) throw DiskFull();
   if (const auto reason = passing_reason(error)) throw StoreUnavailable(*reason);
+  if (is_damage(error)) throw StoreUnavailable(damage_in_words(error));
   throw;
 }
 
-SQLite::Database connect(const std::filesystem::path& file, const std::string& vfs) {
+void repair_if_damaged(const DataDir& directory, const std::string& vfs) {
+  if (!std::filesystem::exists(directory.database())) return;
+  for (const std::string& damage : repair(directory, Depth::rows, vfs).damage)
+    spdlog::error("the data directory was damaged: {}", damage);
+}
+
+/// A database that an older version made gives no room back; all of it is written anew, once.
+void give_room_back(SQLite::Database& database) {
+  constexpr int incremental = 2;
+  if (database.execAndGet("PRAGMA auto_vacuum").getInt() == incremental) return;
+  spdlog::info("the database is written anew, so that its file can shrink from now on");
+  database.exec("PRAGMA auto_vacuum = INCREMENTAL; VACUUM");
+}
+
+SQLite::Database open_jobs(const DataDir& directory, const std::string& vfs) {
+  repair_if_damaged(directory, vfs);
   try {
-    SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms,
-                              vfs);
-    database.exec(
-        "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"
-        "PRAGMA journal_size_limit = 67108864");
+    SQLite::Database database = connect(directory.database(), vfs);
+    migrate(database);
+    give_room_back(database);
+    seal_changes(database);
     return database;
   } catch (const SQLite::Exception& error) {
-    throw CannotOpenStore("cannot open the jobs in " + file.string() + ": " + error.getErrorStr() +
-                          " (--data-dir)");
+    throw CannotOpenStore("cannot open the jobs in " + directory.database().string() + ": " +
+                          error.getErrorStr() + " (--data-dir)");
   }
+}
+
+std::optional<KeptClock> kept_clock(const SQLite::Database& database) {
+  auto row = prepared(database, "SELECT retention, wall FROM state");
+  if (!row.executeStep()) return std::nullopt;
+  return KeptClock{row.getColumn(0).getInt64(), row.getColumn(1).getInt64()};
 }
 
 Ending attempts_used_up() {
@@ -135,30 +90,31 @@ Ending attempts_used_up() {
 
 // --- the two ways into the database
 
-/// Runs the step as one transaction.
+/// Runs the step as one transaction, or as a part of one.
 template <class Step>
-auto SqliteStore::write(const Step& step) {
-  const std::lock_guard lock(writing_);
-  const std::int64_t bytes_before = ended_bytes_;
+auto SqliteStore::write(const Step& step, Survives survives) {
+  std::optional<std::invoke_result_t<Step>> result;
   try {
-    SQLite::Transaction transaction(writer_, SQLite::TransactionBehavior::IMMEDIATE);
-    auto result = step();
-    transaction.commit();
-    const std::lock_guard noting(trouble_mutex_);
-    if (std::exchange(trouble_, std::nullopt)) spdlog::info("the data directory can be written again");
-    return result;
+    commits_.run([&] { result = step(); }, survives);
   } catch (const SQLite::Exception& error) {
-    ended_bytes_ = bytes_before;
-    if (const auto reason = passing_reason(error)) {
-      const std::lock_guard noting(trouble_mutex_);
-      if (!trouble_) spdlog::error("{}", *reason);
-      trouble_ = reason;
-    }
+    note_trouble(error);
     rethrow_as_unavailable(error);
-  } catch (...) {
-    ended_bytes_ = bytes_before;
-    throw;
   }
+  return *std::move(result);
+}
+
+/// The same for a step after which there is more room.
+template <class Step>
+auto SqliteStore::write_what_frees(const Step& step) {
+  try {
+    return write(step);
+  } catch (const DiskFull&) {
+    const std::lock_guard lock(trouble_mutex_);
+    reserve_.spend();
+  }
+  auto result = write(step);
+  shrink();
+  return result;
 }
 
 template <class Step>
@@ -167,7 +123,19 @@ auto SqliteStore::read(const Step& step) const {
   try {
     return step();
   } catch (const SQLite::Exception& error) {
+    if (is_damage(error)) note_trouble(error);
     rethrow_as_unavailable(error);
+  }
+}
+
+void SqliteStore::note_trouble(const SQLite::Exception& error) const {
+  const std::lock_guard lock(trouble_mutex_);
+  if (is_damage(error)) {
+    if (!damage_) spdlog::error("{}", damage_in_words(error));
+    damage_ = damage_in_words(error);
+  } else if (const auto reason = passing_reason(error)) {
+    if (!trouble_) spdlog::error("{}", *reason);
+    trouble_ = reason;
   }
 }
 
@@ -178,10 +146,10 @@ SqliteStore::SqliteStore(const std::filesystem::path& directory, const StoreLimi
     : limits_(limits),
       directory_(directory),
       vfs_(vfs),
-      writer_(connect(directory_.database(), vfs_)),
-      reader_(connect(directory_.database(), vfs_)) {
+      writer_(open_jobs(directory_, vfs_)),
+      reader_(connect(directory_.database(), vfs_)),
+      reserve_(directory_.reserve()) {
   try {
-    migrate(writer_);
     recover();
   } catch (const std::runtime_error& error) {
     throw CannotOpenStore("cannot open the jobs in " + directory.string() + ": " + error.what());
@@ -189,44 +157,78 @@ SqliteStore::SqliteStore(const std::filesystem::path& directory, const StoreLimi
 }
 
 std::string SqliteStore::add(NewJob job) {
+  require_room();
   const std::string packed = pack_text(*job.problem);
   return write([&]() -> std::string {
     if (job.key) {
-      if (const auto earlier = job_with_key(*job.key, *job.problem)) return *earlier;
+      if (const auto earlier = job_with_key(writer_, job.owner, *job.key, *job.problem)) return *earlier;
     }
-    const auto queued = writer_.execAndGet("SELECT count(*) FROM jobs WHERE status = 'queued'").getInt64();
-    if (static_cast<std::size_t>(queued) >= limits_.queue) throw QueueFull(limits_.queue);
+    if (queued("", job.owner) >= limits_.queue) throw QueueFull(limits_.queue);
+    if (job.share.queue && queued(" AND owner = ?", job.owner) >= *job.share.queue)
+      throw QueueFull(*job.share.queue, true);
     prepared(writer_,
-             "INSERT INTO jobs (id, status, title, created, bytes, trace) VALUES (?, 'queued', ?, ?, ?, ?)",
-             job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed.size()), job.trace)
+             "INSERT INTO jobs (id, status, title, created, bytes, trace, owner) "
+             "VALUES (?, 'queued', ?, ?, ?, ?, ?)",
+             job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed.size()),
+             job.trace, job.owner)
         .exec();
     prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed}).exec();
-    if (job.key) prepared(writer_, "INSERT INTO idempotency_keys VALUES (?, ?)", *job.key, job.id).exec();
+    if (job.key)
+      prepared(writer_, "INSERT INTO idempotency_keys VALUES (?, ?, ?)", job.owner, *job.key, job.id).exec();
     return job.id;
   });
 }
 
-std::optional<std::string> SqliteStore::job_with_key(const std::string& key, const std::string& problem) {
-  auto row = prepared(writer_, "SELECT job FROM idempotency_keys WHERE key = ?", key);
+/// Jobs that wait, under a further condition on their rows, of which the owner is the value.
+std::size_t SqliteStore::queued(const std::string& condition, const std::string& owner) {
+  const std::string sql = "SELECT count(*) FROM jobs WHERE status = 'queued'" + condition;
+  auto row = condition.empty() ? prepared(writer_, sql) : prepared(writer_, sql, owner);
+  row.executeStep();
+  return static_cast<std::size_t>(row.getColumn(0).getInt64());
+}
+
+std::optional<std::string> SqliteStore::earlier(const std::string& owner, const std::string& key,
+                                                const std::string& problem) {
+  return read([&] { return job_with_key(reader_, owner, key, problem); });
+}
+
+std::optional<std::string> SqliteStore::job_with_key(const SQLite::Database& database,
+                                                     const std::string& owner, const std::string& key,
+                                                     const std::string& problem) const {
+  auto row = prepared(database, "SELECT job FROM idempotency_keys WHERE owner = ? AND key = ?", owner, key);
   if (!row.executeStep()) return std::nullopt;
   const std::string id = row.getColumn(0).getString();
-  if (*problem_of(writer_, id) != problem) throw KeyReused(id);
+  const auto known = problem_of(database, id);
+  if (known && *known != problem) throw KeyReused(id);
   return id;
 }
 
 std::optional<Claim> SqliteStore::claim() {
-  return write([&]() -> std::optional<Claim> {
-    auto row = prepared(writer_,
-                        "UPDATE jobs SET status = 'running', started = ?, attempt = attempt + 1 WHERE id = "
-                        "(SELECT min(id) FROM jobs WHERE status = 'queued') "
-                        "RETURNING " +
-                            job_columns + ", attempt",
-                        now());
-    if (!row.executeStep()) return std::nullopt;
-    Job job = job_of(row);
-    const auto problem = problem_of(writer_, job.id);
-    return Claim{std::move(job), problem, static_cast<std::uint64_t>(row.getColumn(8).getInt64())};
-  });
+  const auto step = [&]() -> std::optional<Claim> {
+    for (;;) {
+      Job job;
+      std::int64_t attempt = 0;
+      {
+        auto row = prepared(writer_, "SELECT " + job_columns +
+                                         ", attempt FROM jobs WHERE status = 'queued' ORDER BY id LIMIT 1");
+        if (!row.executeStep()) return std::nullopt;
+        job = job_of(row);
+        attempt = row.getColumn(job_column_count).getInt64() + 1;
+      }
+      if (job.status != JobStatus::queued) {
+        fail_as_damaged(writer_, job.id, "entry in the list of solves", clock_.now());
+        continue;
+      }
+      job.status = JobStatus::running;
+      job.started = std::chrono::system_clock::now();
+      prepared(writer_, "UPDATE jobs SET status = 'running', started = ?, attempt = ? WHERE id = ?",
+               milliseconds(*job.started), attempt, job.id)
+          .exec();
+      const auto problem = problem_of(writer_, job.id);
+      return Claim{std::move(job), problem, static_cast<std::uint64_t>(attempt)};
+    }
+  };
+  return write(step, Survives::process);
 }
 
 bool SqliteStore::finish(const Claim& claim, const Ending& ending) {
@@ -238,18 +240,19 @@ bool SqliteStore::finish(const Claim& claim, const Ending& ending) {
 }
 
 bool SqliteStore::give_back(const Claim& claim) {
-  return write([&] {
+  const auto step = [&] {
     return prepared(writer_,
                     "UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 "
                     "WHERE id = ? AND attempt = ? AND status = 'running' AND NOT cancel_asked",
                     claim.job.id, static_cast<std::int64_t>(claim.attempt))
                .exec() == 1;
-  });
+  };
+  return write(step, Survives::process);
 }
 
 Cancellation SqliteStore::cancel(const std::string& id) {
   const Ending cancelled = cancelled_ending("The solve was cancelled before it began.");
-  return write([&] {
+  return write_what_frees([&] {
     if (end(id, "status = 'queued'", cancelled, {})) return Cancellation::ended;
     const bool runs =
         prepared(writer_, "UPDATE jobs SET cancel_asked = 1 WHERE id = ? AND status = 'running'", id)
@@ -259,11 +262,10 @@ Cancellation SqliteStore::cancel(const std::string& id) {
 }
 
 bool SqliteStore::remove_ended(const std::string& id) {
-  return write([&] {
-    auto row =
-        prepared(writer_, "DELETE FROM jobs WHERE id = ? AND finished IS NOT NULL RETURNING bytes", id);
+  return write_what_frees([&] {
+    auto row = prepared(writer_, "DELETE FROM jobs WHERE id = ? AND ended IS NOT NULL RETURNING bytes", id);
     if (!row.executeStep()) return false;
-    ended_bytes_ -= row.getColumn(0).getInt64();
+    prepared(writer_, "UPDATE state SET ended_bytes = ended_bytes - ?", row.getColumn(0).getInt64()).exec();
     return true;
   });
 }
@@ -272,16 +274,22 @@ bool SqliteStore::remove_ended(const std::string& id) {
 bool SqliteStore::end(const std::string& id, const std::string& condition, const Ending& ending,
                       const std::string& findings) {
   const std::string verdict = pack_verdict(verdict_of(ending));
+  const KeptClock clock = clock_.reading();
+  std::int64_t bytes = 0;
   {
-    auto row = prepared(writer_,
-                        "UPDATE jobs SET status = ?, finished = ?, verdict = ?, bytes = bytes + ? "
-                        "WHERE id = ? AND " +
-                            condition + " RETURNING bytes",
-                        std::string(name(ending.status)), now(), Blob{verdict},
-                        static_cast<std::int64_t>(findings.size()), id);
+    auto row =
+        prepared(writer_,
+                 "UPDATE jobs SET status = ?, finished = ?, ended = ?, verdict = ?, bytes = bytes + ?, "
+                 "damaged = ? WHERE id = ? AND " +
+                     condition + " RETURNING bytes",
+                 std::string(name(ending.status)), clock.wall, clock.retention, Blob{verdict},
+                 static_cast<std::int64_t>(findings.size()), static_cast<int>(is_damaged(ending)), id);
     if (!row.executeStep()) return false;
-    ended_bytes_ += row.getColumn(0).getInt64();
+    bytes = row.getColumn(0).getInt64();
   }
+  prepared(writer_, "UPDATE state SET ended_bytes = ended_bytes + ?, retention = ?, wall = ?", bytes,
+           clock.retention, clock.wall)
+      .exec();
   const std::string_view rest = findings;
   for (std::size_t begin = 0; begin < rest.size(); begin += piece_bytes) {
     prepared(writer_, "INSERT INTO results VALUES (?, ?, ?)", id,
@@ -292,40 +300,96 @@ bool SqliteStore::end(const std::string& id, const std::string& condition, const
   return true;
 }
 
-void SqliteStore::drop_expired() {
-  write([&] {
+// --- what is kept
+
+void SqliteStore::tidy() {
+  constexpr std::int64_t between_readings = 600'000;
+  write_what_frees([&] {
     drop_beyond_limits();
+    const KeptClock clock = clock_.reading();
+    prepared(writer_, "UPDATE state SET retention = ?, wall = ? WHERE abs(wall - ?) > ?", clock.retention,
+             clock.wall, clock.wall, between_readings)
+        .exec();
     return true;
   });
+  shrink();
 }
 
 /// Within a step, which should stay short: what is left over goes with the next one.
 void SqliteStore::drop_beyond_limits() {
-  constexpr int most_at_once = 1000;
-  const std::int64_t oldest = milliseconds(std::chrono::system_clock::now() - limits_.keep);
+  constexpr int most_at_once = 100;
+  const bool by_age = !clock_.holds();
   for (int i = 0; i < most_at_once; ++i) {
-    auto row = prepared(writer_,
-                        "SELECT id, finished, bytes FROM jobs WHERE finished IS NOT NULL "
-                        "ORDER BY finished, id LIMIT 2");
-    if (!row.executeStep()) return;
-    const std::string id = row.getColumn(0).getString();
-    const bool expired = row.getColumn(1).getInt64() < oldest;
-    const std::int64_t bytes = row.getColumn(2).getInt64();
-    const bool last = !row.executeStep();
-    if (!expired && (last || ended_bytes_ <= static_cast<std::int64_t>(limits_.keep_bytes))) return;
-    prepared(writer_, "DELETE FROM jobs WHERE id = ?", id).exec();
-    ended_bytes_ -= bytes;
-    const LogField job("job", id);
-    spdlog::info("dropped bytes={} kept_bytes={} ({})", bytes, ended_bytes_,
-                 expired ? "--keep-seconds" : "--keep-bytes");
+    writer_.exec("SAVEPOINT dropping");
+    try {
+      const bool dropped = drop_oldest_beyond_limits(by_age);
+      writer_.exec("RELEASE dropping");
+      if (!dropped) return;
+    } catch (const SQLite::Exception& error) {
+      // What cannot be dropped must not hinder what is to be kept.
+      if (!is_damage(error)) throw;
+      note_trouble(error);
+      writer_.exec("ROLLBACK TO dropping; RELEASE dropping");
+      return;
+    }
+  }
+}
+
+/// False if nothing is beyond the limits.
+bool SqliteStore::drop_oldest_beyond_limits(bool by_age) {
+  const std::int64_t kept_bytes = writer_.execAndGet("SELECT ended_bytes FROM state").getInt64();
+  const std::int64_t oldest =
+      clock_.now() - std::chrono::duration_cast<std::chrono::milliseconds>(limits_.keep).count();
+  auto row = prepared(writer_, "SELECT id, ended, bytes, " + is_intact +
+                                   " FROM jobs WHERE ended IS NOT NULL ORDER BY ended, id LIMIT 2");
+  if (!row.executeStep()) return false;
+  const std::string id = row.getColumn(0).getString();
+  const bool expired = by_age && row.getColumn(1).getInt64() < oldest;
+  const std::int64_t bytes = row.getColumn(2).getInt64();
+  const bool intact = row.getColumn(3).getInt() != 0;
+  const bool last = !row.executeStep();
+  if (!expired && (last || kept_bytes <= static_cast<std::int64_t>(limits_.keep_bytes))) return false;
+  row.reset();
+  if (!intact) {
+    fail_as_damaged(writer_, id, "entry in the list of solves", clock_.now());
+    return true;
+  }
+  prepared(writer_, "DELETE FROM jobs WHERE id = ?", id).exec();
+  prepared(writer_, "UPDATE state SET ended_bytes = ended_bytes - ?", bytes).exec();
+  const LogField job("job", id);
+  spdlog::info("dropped bytes={} kept_bytes={} ({})", bytes, kept_bytes - bytes,
+               expired ? "--keep-seconds" : "--keep-bytes");
+  return true;
+}
+
+/// Gives some of the pages that nothing uses back to the disk, if there are many, or if the disk is full.
+void SqliteStore::shrink() {
+  constexpr int many = 256, at_once = 4096;
+  try {
+    commits_.run_alone([this] {
+      const int unused = writer_.execAndGet("PRAGMA freelist_count").getInt();
+      const bool full = !has_room();
+      if (unused <= (full ? 0 : many)) return;
+      // The log first, so that there is room for that of what is moved.
+      if (full) writer_.exec("PRAGMA wal_checkpoint(TRUNCATE)");
+      writer_.exec("PRAGMA incremental_vacuum(" + std::to_string(at_once) + ")");
+      writer_.exec(full ? "PRAGMA wal_checkpoint(TRUNCATE)" : "PRAGMA wal_checkpoint(PASSIVE)");
+      if (full) has_room();
+    });
+  } catch (const SQLite::Exception& error) {
+    note_trouble(error);
   }
 }
 
 /// The process that left these jobs as running is dead: nobody else has the directory.
 void SqliteStore::recover() {
   write([&] {
-    ended_bytes_ =
-        writer_.execAndGet("SELECT ifnull(sum(bytes), 0) FROM jobs WHERE finished IS NOT NULL").getInt64();
+    clock_ = RetentionClock(kept_clock(writer_));
+    const KeptClock clock = clock_.reading();
+    prepared(writer_,
+             "REPLACE INTO state SELECT 1, ifnull(sum(bytes), 0), ?, ? FROM jobs WHERE ended IS NOT NULL",
+             clock.retention, clock.wall)
+        .exec();
     std::vector<std::pair<std::string, Ending>> over;
     {
       auto row = prepared(writer_,
@@ -362,14 +426,16 @@ std::optional<Job> SqliteStore::find(const std::string& id) const {
 }
 
 JobPage SqliteStore::list(const ListQuery& query) const {
-  std::string sql = "SELECT " + job_columns + " FROM jobs WHERE id < ?";
+  std::string sql = "SELECT " + job_columns + " FROM jobs WHERE id < ?1";
   if (query.status) sql += " AND status = '" + std::string(name(*query.status)) + "'";
-  sql += " ORDER BY id DESC LIMIT ?";
+  if (query.owner) sql += " AND owner = ?3";
+  sql += " ORDER BY id DESC LIMIT ?2";
   const std::string beyond_every_id = "~";
   return read([&] {
     JobPage page;
     auto row = prepared(reader_, sql, query.after.value_or(beyond_every_id),
                         static_cast<std::int64_t>(query.limit) + 1);
+    if (query.owner) row.bind(3, *query.owner);
     while (row.executeStep()) page.jobs.push_back(job_of(row));
     page.more = page.jobs.size() > query.limit;
     if (page.more) page.jobs.pop_back();
@@ -381,35 +447,88 @@ JobCounts SqliteStore::count() const {
   return read([&] {
     JobCounts counts;
     auto row = prepared(reader_, "SELECT status, count(*) FROM jobs GROUP BY status");
-    while (row.executeStep())
-      counts[job_status(row.getColumn(0).getString()).value()] =
-          static_cast<std::size_t>(row.getColumn(1).getInt64());
+    while (row.executeStep()) {
+      // One that no job can have is told of as failed.
+      const auto status = job_status(row.getColumn(0).getString()).value_or(JobStatus::failed);
+      counts[status] += static_cast<std::size_t>(row.getColumn(1).getInt64());
+    }
     return counts;
   });
 }
 
-std::optional<JobResult> SqliteStore::result(const std::string& id) const {
+std::optional<JobResult> SqliteStore::result(const std::string& id) {
+  const std::optional<Job> job = find(id);
+  if (!job) return std::nullopt;
   JobResult result;
   std::string findings;
   try {
-    SQLite::Database connection(directory_.database().string(), SQLite::OPEN_READWRITE, busy_timeout_ms,
-                                vfs_);
+    SQLite::Database connection = connect_to_read(directory_.database(), vfs_);
     // Both from one state of the database.
     const SQLite::Transaction transaction(connection);
     result.problem = problem_of(connection, id);
-    if (!result.problem) return std::nullopt;
     auto row = prepared(connection, "SELECT bytes FROM results WHERE job = ? ORDER BY piece", id);
     while (row.executeStep()) findings += bytes_of(row.getColumn(0));
   } catch (const SQLite::Exception& error) {
+    if (is_damage(error)) return damaged_result(id, "result");
     rethrow_as_unavailable(error);
   }
-  if (!findings.empty()) unpack_findings(findings, result);
-  return result;
+  const bool has_result = job->verdict.summary || job->verdict.last_iteration;
+  if (!result.problem) return damaged_result(id, "problem");
+  if (findings.empty()) return has_result ? damaged_result(id, "result") : result;
+  try {
+    unpack_findings(findings, result);
+    return result;
+  } catch (const std::runtime_error&) {
+    return damaged_result(id, "result");
+  }
+}
+
+/// Nothing if the job was removed meanwhile.
+std::optional<JobResult> SqliteStore::damaged_result(const std::string& id, const std::string& what) {
+  const bool there = write([&] {
+    auto row = prepared(writer_, "SELECT ended IS NOT NULL, damaged FROM jobs WHERE id = ?", id);
+    if (!row.executeStep()) return false;
+    const bool ended = row.getColumn(0).getInt() != 0, known = row.getColumn(1).getInt() != 0;
+    row.reset();
+    // A worker that has it finds out by itself.
+    if (!ended || known) return true;
+    fail_as_damaged(writer_, id, what, clock_.now());
+    const LogField job("job", id);
+    spdlog::error("failed kind=damaged: its {} is not what was written", what);
+    return true;
+  });
+  if (!there) return std::nullopt;
+  return JobResult{std::make_shared<const std::string>("null"), nullptr, nullptr};
+}
+
+std::size_t SqliteStore::damaged() const {
+  return read([&] {
+    return static_cast<std::size_t>(reader_.execAndGet("SELECT count(*) FROM jobs WHERE damaged").getInt64());
+  });
+}
+
+// --- what stands in the way
+
+/// On the disk, for more than what frees some.
+bool SqliteStore::has_room() {
+  const std::lock_guard lock(trouble_mutex_);
+  return reserve_.room();
+}
+
+/// Throws StoreUnavailable if nothing more is to be put on the disk.
+void SqliteStore::require_room() {
+  if (has_room()) return;
+  const std::lock_guard lock(trouble_mutex_);
+  if (!trouble_) spdlog::error("{}", disk_is_full);
+  trouble_ = disk_is_full;
+  throw StoreUnavailable(disk_is_full);
 }
 
 std::optional<std::string> SqliteStore::trouble() {
   {
     const std::lock_guard lock(trouble_mutex_);
+    if (damage_) return damage_;
+    if (!reserve_.room()) return disk_is_full;
     if (!trouble_) return std::nullopt;
   }
   try {
@@ -418,10 +537,13 @@ std::optional<std::string> SqliteStore::trouble() {
       writer_.exec("PRAGMA user_version = " + std::to_string(schema_version()));
       return true;
     });
-    return std::nullopt;
   } catch (const StoreUnavailable& unavailable) {
     return unavailable.what();
   }
+  const std::lock_guard lock(trouble_mutex_);
+  if (trouble_) spdlog::info("the data directory can be written again");
+  trouble_.reset();
+  return std::nullopt;
 }
 
 }  // namespace signorini::server

@@ -15,9 +15,11 @@ namespace signorini::server {
 /// As many jobs wait as may wait.
 class QueueFull : public std::runtime_error {
  public:
-  explicit QueueFull(std::size_t queue_limit) : std::runtime_error("the queue is full"), limit(queue_limit) {}
+  explicit QueueFull(std::size_t queue_limit, bool only_share = false)
+      : std::runtime_error("the queue is full"), limit(queue_limit), share(only_share) {}
 
   std::size_t limit;
+  bool share;  ///< it is the share of one owner that is used up
 };
 
 /// The idempotency key came with another problem before.
@@ -51,12 +53,13 @@ struct StoreLimits {
 /// A job that a worker has taken to run. Only the holder of the latest attempt may end it.
 struct Claim {
   Job job;
-  std::shared_ptr<const std::string> problem;
+  std::shared_ptr<const std::string> problem;  ///< null if what is stored is damaged
   std::uint64_t attempt = 0;
 };
 
 struct ListQuery {
   std::optional<JobStatus> status;
+  std::optional<std::string> owner;
   std::size_t limit = 50;
   std::optional<std::string> after;  ///< only jobs that are older than this id
 };
@@ -82,11 +85,16 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  /// Takes a new job as `queued` and returns its id; or, for a key that came with the same problem before,
-  /// the id of that earlier job. Throws QueueFull and KeyReused.
+  /// Takes a new job as `queued` and returns its id; or what earlier() finds. Throws QueueFull and KeyReused.
   virtual std::string add(NewJob job) = 0;
 
-  /// Turns the oldest queued job into `running`.
+  /// The id of the job that came from this owner with this key and the same problem before. Throws KeyReused
+  /// if it was another problem.
+  virtual std::optional<std::string> earlier(const std::string& owner, const std::string& key,
+                                             const std::string& problem) = 0;
+
+  /// Turns the oldest queued job into `running`. Survives the end of the process, perhaps not that of the
+  /// machine.
   virtual std::optional<Claim> claim() = 0;
 
   /// Ends a running job, and drops what is beyond the limits. False if the attempt is no longer the job's.
@@ -101,8 +109,9 @@ class JobStore {
   /// Removes a job that has ended. False if there is none.
   virtual bool remove_ended(const std::string& id) = 0;
 
-  /// Drops the jobs that ended too long ago.
-  virtual void drop_expired() = 0;
+  /// Drops some of the jobs that ended too long ago, if there are any, and gives back room that nobody needs;
+  /// a step that is short.
+  virtual void tidy() = 0;
 
   virtual std::optional<Job> find(const std::string& id) const = 0;
   virtual JobPage list(const ListQuery& query) const = 0;
@@ -110,8 +119,12 @@ class JobStore {
   /// How many jobs there are of each status that any job has.
   virtual JobCounts count() const = 0;
 
-  /// The problem of a job, and what was found out once it has ended.
-  virtual std::optional<JobResult> result(const std::string& id) const = 0;
+  /// The problem of a job, and what was found out once it has ended. If that is damaged, the job is `failed`
+  /// from now on, and has no solution.
+  virtual std::optional<JobResult> result(const std::string& id) = 0;
+
+  /// How many jobs are kept as `failed` because what was stored of them is damaged.
+  virtual std::size_t damaged() const = 0;
 
   /// Why nothing can be written for now; nothing if it can. Tries it if the last write failed.
   virtual std::optional<std::string> trouble() = 0;

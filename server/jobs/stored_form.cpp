@@ -1,5 +1,6 @@
 #include "server/jobs/stored_form.hpp"
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -29,13 +30,29 @@ std::string compress(const std::string& plain) {
   return packed;
 }
 
+std::runtime_error damaged() {
+  return std::runtime_error("stored bytes are damaged");
+}
+
+/// The size that damaged bytes claim may be any: room is made as what they hold comes to need it, which
+/// doubles hardly ever do.
 std::string decompress(const std::string& packed) {
   const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) {
-    throw std::runtime_error("stored bytes are damaged");
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) throw damaged();
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  std::string plain(std::min<unsigned long long>(size, 64 * packed.size()), '\0');
+  ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+  std::size_t done = 0, left = 1;
+  while (left > 0) {
+    if (done == plain.size() && done < size) plain.resize(std::min<unsigned long long>(size, 2 * done));
+    ZSTD_outBuffer out{plain.data(), plain.size(), done};
+    const std::size_t read_before = in.pos;
+    left = checked(ZSTD_decompressStream(context.get(), &out, &in));
+    const bool stuck = in.pos == read_before && out.pos == done;
+    done = out.pos;
+    if (stuck && (in.pos == in.size || done == size)) throw damaged();
   }
-  std::string plain(size, '\0');
-  checked(ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size()));
+  if (done != size) throw damaged();
   return plain;
 }
 

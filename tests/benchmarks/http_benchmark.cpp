@@ -1,9 +1,10 @@
 /// What a small problem costs through HTTP: a child service with two workers on the loopback, keep-alive
 /// clients that post and wait for the summary. The clients run on the same cores as the service. Not covered:
-/// a real network, TLS, a store on disk.
+/// a real network, TLS.
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -64,6 +65,14 @@ Daemon& service() {
   return daemon;
 }
 
+/// On the disk that it was built on; a temporary directory may lie in memory.
+Daemon& durable_service() {
+  static const std::string directory = std::filesystem::path(SIGNORINID).replace_filename("benchmark-data");
+  std::filesystem::remove_all(directory);
+  static Daemon daemon({"--workers", "2", "--data-dir", directory, "--queue-limit", "1000"});
+  return daemon;
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -84,15 +93,14 @@ void HttpLatency(benchmark::State& state, const std::string& problem) {
   state.counters["median_ms"] = median(times);
 }
 
-/// Eight clients at once, a hundred solves each.
-void HttpThroughput(benchmark::State& state, const std::string& problem) {
-  constexpr int clients = 8, solves_each = 100;
-  service();
+/// So many clients at once, 1600 solves together.
+void HttpThroughput(benchmark::State& state, Daemon& (*daemon)(), int clients, const std::string& problem) {
+  const int solves_each = 1600 / clients, port = daemon().port();
   for (auto _ : state) {
     std::vector<std::jthread> threads;
     for (int i = 0; i < clients; ++i)
       threads.emplace_back([&] {
-        Client client(service().port());
+        Client client(port);
         for (int k = 0; k < solves_each; ++k) client.solve(problem);
       });
   }
@@ -104,7 +112,15 @@ BENCHMARK_CAPTURE(HttpLatency, active_set, active_set())->Unit(benchmark::kMilli
 BENCHMARK_CAPTURE(HttpLatency, uzawa_200_iterations, uzawa_200())
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
-BENCHMARK_CAPTURE(HttpThroughput, active_set, active_set())->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(HttpThroughput, active_set, service, 8, active_set())
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(HttpThroughput, active_set_64_clients, service, 64, active_set())
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(HttpThroughput, active_set_64_clients_on_disk, durable_service, 64, active_set())
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace signorini::server

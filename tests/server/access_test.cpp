@@ -72,7 +72,11 @@ TEST_F(Tokens, AreNotNeededByProbesAndReaders) {
 TEST(TokenFiles, MustHoldGoodTokens) {
   EXPECT_THROW(BearerTokens("/nonexistent"), BadTokenFile);
   for (const char* text :
-       {"", "\n\n", "short\n", "a token with blanks in it\n", "0123456789abcdef\nshort\n"}) {
+       {"", "\n\n", "short\n", "a token with blanks in it\n", "0123456789abcdef\nshort\n",
+        "two 0123456789abcdef\n", "a write 0123456789abcdef\n", "a/b read 0123456789abcdef\n",
+        "a read 0123456789abcdef queue=0\n", "a read 0123456789abcdef memory=much\n",
+        "a read 0123456789abcdef speed=1\n", "a read 0123456789abcdef\nb read 0123456789abcdef\n",
+        "a read 0123456789abcdef rate=1\na read 0123456789abcdeg rate=2\n"}) {
     EXPECT_THROW(BearerTokens(token_file(text)), BadTokenFile) << text;
   }
 }
@@ -236,6 +240,18 @@ TEST_F(Memory, ThatIsSpokenForIs503UntilASolveEnds) {
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_EQ(status, 202);
+}
+
+TEST_F(Memory, IsNotAskedForWhatIsThereAlready) {
+  const auto send = [&] {
+    return client_.Post("/v1/solves", {{"Idempotency-Key", "again"}}, problem_titled("slow"), "application/json");
+  };
+  const std::string id = json::parse(send()->body).at("id");
+  wait_for(id, "running");
+  const auto again = send();
+  ASSERT_EQ(again->status, 202) << again->body;
+  EXPECT_EQ(json::parse(again->body).at("id"), id);
+  client_.Delete("/v1/solves/" + id);
 }
 
 TEST_F(Memory, ThatNoSolveMayTakeIs413) {

@@ -34,20 +34,22 @@ std::vector<std::string> daemon_flags(std::vector<std::string> flags) {
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& standard_input) {
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments, const std::string& standard_input,
+                           const std::vector<std::string>& launcher) {
   std::ofstream(directory_.path() + "/in", std::ios::binary) << standard_input;
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, 0, (directory_.path() + "/in").c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, 1, (directory_.path() + "/out").c_str(), O_WRONLY | O_CREAT, 0600);
   posix_spawn_file_actions_addopen(&files, 2, (directory_.path() + "/err").c_str(), O_WRONLY | O_CREAT, 0600);
-  std::string program = SIGNORINID;
-  std::vector<std::string> copies = arguments;
-  std::vector<char*> argv{program.data()};
-  for (std::string& argument : copies) argv.push_back(argument.data());
+  std::vector<std::string> words = launcher;
+  words.push_back(SIGNORINID);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  if (posix_spawn(&pid_, program.c_str(), &files, nullptr, argv.data(), environ) != 0) {
-    ADD_FAILURE() << "cannot start " << program;
+  if (posix_spawnp(&pid_, argv[0], &files, nullptr, argv.data(), environ) != 0) {
+    ADD_FAILURE() << "cannot start " << words.front();
     exit_code_ = -1;
   }
   posix_spawn_file_actions_destroy(&files);
@@ -85,7 +87,8 @@ std::string ChildProcess::standard_error() const {
   return content_of(directory_.path() + "/err");
 }
 
-Daemon::Daemon(std::vector<std::string> flags) : process_(daemon_flags(std::move(flags))) {
+Daemon::Daemon(std::vector<std::string> flags, const std::vector<std::string>& launcher)
+    : process_(daemon_flags(std::move(flags)), {}, launcher) {
   const std::string announcement = "listening on http://127.0.0.1:";
   for (int i = 0; i < 1000 && port_ == 0; ++i) {
     const std::string log = process_.standard_error();

@@ -11,10 +11,12 @@
 
 namespace signorini::server {
 
-/// `signorinid` as a process of its own, with its streams in files. Killed at the end if it still runs.
+/// `signorinid` as a process of its own, with its streams in files. Killed at the end if it still runs. A
+/// launcher is a command that runs another one, such as `env NAME=value`.
 class ChildProcess {
  public:
-  explicit ChildProcess(const std::vector<std::string>& arguments, const std::string& standard_input = {});
+  explicit ChildProcess(const std::vector<std::string>& arguments, const std::string& standard_input = {},
+                        const std::vector<std::string>& launcher = {});
   ~ChildProcess();
 
   ChildProcess(const ChildProcess&) = delete;
@@ -37,7 +39,7 @@ class ChildProcess {
 /// The daemon on a free port.
 class Daemon {
  public:
-  explicit Daemon(std::vector<std::string> flags = {});
+  explicit Daemon(std::vector<std::string> flags = {}, const std::vector<std::string>& launcher = {});
 
   int port() const { return port_; }
   ChildProcess& process() { return process_; }

@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <cstring>
+#include <filesystem>
+#include <thread>
 
 #include <sqlite3.h>
 
@@ -12,6 +14,12 @@ using Fault = FaultyDisk::Fault;
 
 std::atomic<Fault> fault_now = Fault::none;
 std::atomic<int> writes_left = 0;
+std::atomic<int> sync_count = 0;
+std::atomic<int> sync_milliseconds = 0;
+std::atomic<std::int64_t> growth = 0;  ///< bytes that files have grown by since there is no room
+
+/// The directory of the database that was opened last.
+std::filesystem::path directory;
 
 sqlite3_vfs* usual() {
   static sqlite3_vfs* const found = sqlite3_vfs_find(nullptr);
@@ -30,8 +38,20 @@ File& of(sqlite3_file* file) {
 
 Fault fault_of_write() {
   const Fault fault = fault_now;
-  if (fault == Fault::none || fault == Fault::cannot_sync) return Fault::none;
+  if (fault == Fault::none || fault == Fault::cannot_sync || fault == Fault::no_room) return Fault::none;
   return writes_left.fetch_sub(1) > 0 ? Fault::none : fault;
+}
+
+/// Whether the file may be written up to there.
+bool has_room(sqlite3_file* file, std::int64_t end) {
+  sqlite3_int64 size = 0;
+  of(file).methods().xFileSize(of(file).real(), &size);
+  if (fault_now != Fault::no_room || end <= size) return true;
+  constexpr std::int64_t room_of_reserve = 4 << 20;
+  const bool spent = !std::filesystem::exists(directory / "reserve");
+  if (growth + end - size > (spent ? room_of_reserve : 0)) return false;
+  growth += end - size;
+  return true;
 }
 
 int close(sqlite3_file* file) {
@@ -47,6 +67,7 @@ int write(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset
   const Fault fault = fault_of_write();
   if (fault == Fault::full) return SQLITE_FULL;
   if (fault == Fault::cannot_access) return SQLITE_IOERR_WRITE;
+  if (!has_room(file, offset + count)) return SQLITE_FULL;
   return of(file).methods().xWrite(of(file).real(), bytes, count, offset);
 }
 
@@ -56,6 +77,8 @@ int truncate(sqlite3_file* file, sqlite3_int64 size) {
 
 int sync(sqlite3_file* file, int flags) {
   if (fault_now == Fault::cannot_sync) return SQLITE_IOERR_FSYNC;
+  ++sync_count;
+  std::this_thread::sleep_for(std::chrono::milliseconds(sync_milliseconds));
   return of(file).methods().xSync(of(file).real(), flags);
 }
 
@@ -127,6 +150,7 @@ constexpr sqlite3_io_methods methods{2,
 
 int open(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* flags_out) {
   File& wrapper = of(file);
+  if ((flags & SQLITE_OPEN_MAIN_DB) != 0) directory = std::filesystem::path(name).parent_path();
   const int code = usual()->xOpen(usual(), name, wrapper.real(), flags, flags_out);
   wrapper.pMethods = wrapper.real()->pMethods == nullptr ? nullptr : &methods;
   return code;
@@ -149,7 +173,16 @@ std::string FaultyDisk::vfs() {
   return registered == SQLITE_OK ? vfs.zName : "";
 }
 
+int FaultyDisk::syncs() {
+  return sync_count;
+}
+
+void FaultyDisk::slow_down(std::chrono::milliseconds sync) {
+  sync_milliseconds = static_cast<int>(sync.count());
+}
+
 void FaultyDisk::fail(Fault fault, int writes_before) {
+  growth = 0;
   writes_left = writes_before;
   fault_now = fault;
 }

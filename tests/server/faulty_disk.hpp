@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace signorini::server {
@@ -11,6 +12,7 @@ class FaultyDisk {
   enum class Fault {
     none,
     full,           ///< writes fail with ENOSPC
+    no_room,        ///< files cannot grow, but by the room of the reserve once that is spent
     cannot_sync,    ///< writes work, but fsync fails with EIO
     cannot_access,  ///< reads and writes fail with EIO
   };
@@ -20,6 +22,12 @@ class FaultyDisk {
 
   /// From now on; the first so many writes still work.
   static void fail(Fault fault, int writes_before = 0);
+
+  /// How often files were synced so far.
+  static int syncs();
+
+  /// From now on a sync takes so long.
+  static void slow_down(std::chrono::milliseconds sync);
 };
 
 }  // namespace signorini::server

@@ -2,11 +2,13 @@
 
 #include "server/jobs/sqlite_store.hpp"
 
+#include "running_service.hpp"
+
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
-#include <gtest/gtest.h>
-
+#include "child_process.hpp"
 #include "faulty_disk.hpp"
 #include "server/jobs/schema.hpp"
 #include "server/jobs/stored_form.hpp"
@@ -176,7 +178,8 @@ TEST_F(SqliteStoreTest, TakesOverTheJobsOfAnOlderVersion) {
 TEST_F(SqliteStoreTest, DoesNotTouchTheJobsOfANewerVersion) {
   reopen();
   close();
-  database().exec("PRAGMA user_version = " + std::to_string(schema_version() + 1));
+  database().exec("ALTER TABLE jobs ADD COLUMN later INTEGER; PRAGMA user_version = " +
+                  std::to_string(schema_version() + 1));
   EXPECT_NE(reason_not_to_open().find("newer version"), std::string::npos);
 }
 
@@ -211,6 +214,117 @@ TEST_F(SqliteStoreTest, RefusesWhileTheDiskFailsAndRecovers) {
   }
   close();
   EXPECT_EQ(database().execAndGet("PRAGMA integrity_check").getString(), "ok");
+}
+
+TEST_F(SqliteStoreTest, ASolveAloneCostsTwoSyncs) {
+  SqliteStore& store = reopen();
+  store.add(new_job("first"));
+  store.finish(*store.claim(), success());
+  const int before = FaultyDisk::syncs();
+  store.add(new_job("a"));
+  store.finish(*store.claim(), success(20'000));
+  store.result("a");
+  EXPECT_EQ(FaultyDisk::syncs() - before, 2);
+}
+
+TEST_F(SqliteStoreTest, OneSyncServesAllThatWait) {
+  SqliteStore& store = reopen({10'000, plenty, std::chrono::hours(1)});
+  FaultyDisk::slow_down(std::chrono::milliseconds(5));
+  const int before = FaultyDisk::syncs();
+  std::vector<std::thread> clients;
+  std::atomic<int> refused = 0;
+  constexpr int threads = 16, each = 20;
+  for (int c = 0; c < threads; ++c) {
+    clients.emplace_back([&store, &refused, c] {
+      for (int i = 0; i < each; ++i) {
+        const std::string id = std::to_string(c) + "-" + std::to_string(i);
+        // Somebody else's refusal harms nobody in the same commit.
+        store.add(new_job(id, "{}", id));
+        try {
+          store.add(new_job(id + "again", "{1}", id));
+        } catch (const KeyReused&) {
+          ++refused;
+        }
+      }
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  FaultyDisk::slow_down(std::chrono::milliseconds(0));
+  EXPECT_EQ(refused, threads * each);
+  EXPECT_EQ(store.count()[JobStatus::queued], static_cast<std::size_t>(threads * each));
+  // By itself each of them would cost one; checkpoints included.
+  EXPECT_LT(FaultyDisk::syncs() - before, threads * each / 2);
+}
+
+TEST_F(SqliteStoreTest, AFullDiskIsFreedByDeleting) {
+  const StoreLimits limits{100, plenty, std::chrono::hours(1)};
+  SqliteStore& first = reopen(limits);
+  for (const char* id : {"a", "b"}) {
+    first.add(new_job(id));
+    first.finish(*first.claim(), success(3 << 20));
+  }
+  SqliteStore& store = reopen(limits);
+  const auto size = std::filesystem::file_size(file());
+  FaultyDisk::fail(FaultyDisk::Fault::no_room);
+  int taken = 0;
+  EXPECT_THROW(
+      for (;; ++taken) store.add(new_job("more" + std::to_string(taken), std::string(100'000, 'x') +
+                                                                             std::to_string(std::rand()))),
+      std::exception);
+  EXPECT_TRUE(store.remove_ended("a"));
+  EXPECT_FALSE(store.find("a"));
+  EXPECT_EQ(store.find("b")->status, JobStatus::succeeded);
+  FaultyDisk::fail(FaultyDisk::Fault::none);
+  EXPECT_FALSE(store.trouble());
+  for (int i = 0; i < 10; ++i) store.tidy();
+  EXPECT_LT(std::filesystem::file_size(file()), size);
+}
+
+TEST_F(SqliteStoreTest, TheFileShrinksAgain) {
+  SqliteStore& store = reopen();
+  for (int i = 0; i < 5; ++i) {
+    store.add(new_job(std::to_string(i)));
+    store.finish(*store.claim(), success(4 << 20));
+  }
+  close();
+  const auto full = std::filesystem::file_size(file());
+  EXPECT_GT(full, 15u << 20);
+  SqliteStore& again = reopen();
+  for (int i = 0; i < 5; ++i) again.remove_ended(std::to_string(i));
+  for (int i = 0; i < 10; ++i) again.tidy();
+  EXPECT_LT(std::filesystem::file_size(file()), full / 4);
+}
+
+/// In a name space of its own the daemon has a disk of 24 MB, which the test fills.
+TEST(FullDisk, IsToldOfAndFreedByDeleting) {
+  ChildProcess probe({"--version"}, {}, {"unshare", "--mount", "--map-root-user"});
+  if (probe.wait(std::chrono::seconds(20)) != 0) GTEST_SKIP() << "no name spaces here";
+  const TemporaryDirectory directory;
+  const std::string disk = directory.path() + "/disk";
+  std::filesystem::create_directory(disk);
+  Daemon daemon({"--data-dir", disk + "/data"},
+                {"unshare", "--mount", "--map-root-user", "sh", "-c",
+                 "mount -t tmpfs -o size=24m tmpfs '" + disk + "' && exec \"$@\"", "sh"});
+  const std::string seen_from_here = "/proc/" + std::to_string(daemon.process().id()) + "/root" + disk;
+  if (!std::filesystem::exists(seen_from_here + "/data/jobs.sqlite")) GTEST_SKIP() << "cannot look into it";
+  httplib::Client client("127.0.0.1", daemon.port());
+  client.set_read_timeout(60);
+  const auto reply = client.Post("/v1/solves?wait=60&fields=summary", problem_titled("small"), "application/json");
+  ASSERT_EQ(reply->status, 200) << reply->body;
+  const std::string id = nlohmann::json::parse(reply->body).at("id");
+  EXPECT_EQ(client.Get("/readyz")->status, 200);
+
+  std::ofstream filler(seen_from_here + "/filler");
+  const std::string block(1 << 16, 'x');
+  while (filler << block << std::flush) continue;
+  filler.close();
+  expect_problem(client.Get("/readyz"), 503);
+  expect_problem(client.Post("/v1/solves", problem_titled("small"), "application/json"), 503);
+  EXPECT_EQ(client.Delete("/v1/solves/" + id)->status, 204);
+  EXPECT_EQ(client.Get("/v1/solves/" + id)->status, 404);
+  std::filesystem::remove(seen_from_here + "/filler");
+  EXPECT_EQ(client.Get("/readyz")->status, 200);
+  EXPECT_EQ(client.Post("/v1/solves", problem_titled("small"), "application/json")->status, 202);
 }
 
 TEST_F(SqliteStoreTest, AReaderDoesNotWaitForAWriter) {

@@ -226,10 +226,10 @@ TEST_P(Store, DropsWhatEndedTooLongAgo) {
   store.add(new_job("a"));
   store.finish(*store.claim(), success());
   store.add(new_job("b"));
-  store.drop_expired();
+  store.tidy();
   EXPECT_TRUE(store.find("a"));
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
-  store.drop_expired();
+  store.tidy();
   EXPECT_EQ(ids(store.list({})), std::vector<std::string>{"b"});
 }
 

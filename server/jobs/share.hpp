@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+namespace signorini::server {
+
+/// What the jobs of one owner may take together; nothing: as much as everybody.
+struct Share {
+  std::optional<std::size_t> queue;  ///< jobs that wait
+  std::optional<double> memory;  ///< bytes that its jobs which may run at the same time are predicted to take
+};
+
+}  // namespace signorini::server

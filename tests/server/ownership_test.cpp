@@ -1,0 +1,199 @@
+// Tokens with names: what is whose, and who may do what.
+
+#include "running_service.hpp"
+
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "api/examples.hpp"
+#include "child_process.hpp"
+#include "server/access/bearer_tokens.hpp"
+#include "temporary_directory.hpp"
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+
+const std::string anne = "anne-has-this-token", bert = "bert-has-this-token", chief = "chief-has-this-token",
+                  viewer = "viewer-has-this-token", slow = "slow-has-this-token-1",
+                  bare = "nobody-has-this-token";
+
+std::string write_tokens(const std::string& file) {
+  std::ofstream(file) << "anne read,solve " << anne << " queue=1 memory=1gb\n"
+                      << "bert read,solve " << bert << "\n\n"
+                      << "chief admin " << chief << "\r\n"
+                      << "viewer read " << viewer << "\n"
+                      << "slow read " << slow << " rate=2\n"
+                      << bare << "\n";
+  return file;
+}
+
+class Owners : public testing::TestWithParam<bool> {
+ protected:
+  Owners() {
+    ServiceOptions options;
+    options.workers = 1;
+    options.queue_limit = 10;
+    options.token_file = write_tokens(directory_.path() + "/tokens");
+    if (GetParam()) options.data_dir = directory_.path() + "/data";
+    service_ = std::make_unique<RunningService>(options);
+    client_ = std::make_unique<httplib::Client>("127.0.0.1", service_->port());
+    client_->set_read_timeout(20);
+  }
+
+  static httplib::Headers as(const std::string& token, const std::string& key = {}) {
+    httplib::Headers headers{{"Authorization", "Bearer " + token}};
+    if (!key.empty()) headers.emplace("Idempotency-Key", key);
+    return headers;
+  }
+  httplib::Result get(const std::string& token, const std::string& path) {
+    return client_->Get(path, as(token));
+  }
+  httplib::Result remove(const std::string& token, const std::string& path) {
+    return client_->Delete(path, as(token));
+  }
+  httplib::Result post(const std::string& token, const std::string& title, const std::string& query = {},
+                       const std::string& key = {}) {
+    return client_->Post("/v1/solves" + query, as(token, key), problem_titled(title), "application/json");
+  }
+  std::size_t solves(const std::string& token) {
+    return json::parse(get(token, "/v1/solves")->body).at("solves").size();
+  }
+
+  TemporaryDirectory directory_;
+  std::unique_ptr<RunningService> service_;
+  std::unique_ptr<httplib::Client> client_;
+};
+
+TEST_P(Owners, SeeAndDeleteTheirOwnOnly) {
+  const std::string id = json::parse(post(anne, "touches", "?wait=10")->body).at("id");
+  const std::string path = "/v1/solves/" + id;
+  for (const char* suffix :
+       {"", "/result", "/result.vtu", "/history", "/history.csv", "/contact.csv", "/events"}) {
+    EXPECT_EQ(get(anne, path + suffix)->status, 200) << suffix;
+    EXPECT_EQ(get(chief, path + suffix)->status, 200) << suffix;
+    for (const std::string& other : {bert, viewer, bare}) expect_problem(get(other, path + suffix), 404);
+  }
+  EXPECT_EQ(solves(anne), 1u);
+  EXPECT_EQ(solves(chief), 1u);
+  EXPECT_EQ(solves(bert), 0u);
+  expect_problem(remove(bert, path), 404);
+  EXPECT_EQ(get(anne, path)->status, 200);
+  EXPECT_EQ(remove(anne, path)->status, 204);
+  const std::string other = json::parse(post(bert, "instant", "?wait=10")->body).at("id");
+  EXPECT_EQ(remove(chief, "/v1/solves/" + other)->status, 204);
+}
+
+TEST_P(Owners, HaveIdempotencyKeysOfTheirOwn) {
+  const std::string first = json::parse(post(anne, "instant", "?wait=10", "key")->body).at("id");
+  const auto other = post(bert, "touches", "?wait=10", "key");
+  EXPECT_EQ(other->status, 200) << other->body;
+  EXPECT_NE(json::parse(other->body).at("id"), first);
+  EXPECT_EQ(json::parse(post(anne, "instant", "?wait=10", "key")->body).at("id"), first);
+  expect_problem(post(anne, "touches", "", "key"), 422);
+}
+
+TEST_P(Owners, DoWhatTheirScopesSay) {
+  EXPECT_EQ(get(viewer, "/v1/solves")->status, 200);
+  const auto refused = post(viewer, "instant");
+  const json refusal = expect_problem(refused, 403);
+  EXPECT_NE(refusal.at("detail").get<std::string>().find("`solve`"), std::string::npos) << refusal;
+  EXPECT_NE(refused->get_header_value("WWW-Authenticate").find("insufficient_scope"), std::string::npos);
+  expect_problem(remove(viewer, "/v1/solves/0"), 403);
+  EXPECT_EQ(post(chief, "instant", "?wait=10")->status, 200);
+  EXPECT_EQ(post(bare, "instant", "?wait=10")->status, 200);
+}
+
+TEST_P(Owners, HaveTheirShareOfTheQueue) {
+  ASSERT_EQ(post(bert, "slow")->status, 202);
+  for (int i = 0; i < 500 && json::parse(get(bert, "/v1/solves?status=running")->body).at("solves").empty();
+       ++i)
+    std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(post(anne, "instant")->status, 202);
+  const auto more = post(anne, "instant");
+  const json refusal = expect_problem(more, 429);
+  EXPECT_NE(refusal.at("detail").get<std::string>().find("`anne`"), std::string::npos) << refusal;
+  EXPECT_FALSE(more->get_header_value("Retry-After").empty());
+  EXPECT_EQ(post(bert, "instant")->status, 202);
+}
+
+TEST_P(Owners, AskAsOftenAsTheirNameMay) {
+  std::map<int, int> count;
+  for (int i = 0; i < 6; ++i) ++count[get(slow, "/v1/solves")->status];
+  EXPECT_GE(count[200], 2);
+  EXPECT_GE(count[429], 1);
+  EXPECT_EQ(get(bert, "/v1/solves")->status, 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stores, Owners, testing::Bool());
+
+TEST(BearerTokens, GiveABareTokenTheSameNameWhereverItStands) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() + "/tokens";
+  std::ofstream(file) << bare << "\n";
+  const std::string name = BearerTokens(file).identify("Bearer " + bare)->name;
+  EXPECT_NE(name, "");
+  EXPECT_EQ(BearerTokens(write_tokens(file)).identify("Bearer " + bare)->name, name);
+  EXPECT_EQ(bare.find(name), std::string::npos);
+}
+
+/// In a process: its log, and the signal.
+TEST(TokenFile, IsReadAgainOnHangupAndItsTokensStayOutOfTheLog) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() + "/tokens";
+  std::ofstream(file) << "anne read,solve " << anne << "\n";
+  Daemon daemon({"--token-file", file});
+  httplib::Client client("127.0.0.1", daemon.port());
+  const auto status = [&](const std::string& token) {
+    return client.Get("/v1/solves?access_token=" + token, {{"Authorization", "Bearer " + token}})->status;
+  };
+  const auto wait_for_status = [&](const std::string& token, int wanted) {
+    for (int i = 0; i < 500 && status(token) != wanted; ++i) std::this_thread::sleep_for(10ms);
+    EXPECT_EQ(status(token), wanted) << token << daemon.process().standard_error();
+  };
+  json problem = json::parse(problem_titled("small"));
+  const auto sent = client.Post("/v1/solves?wait=60", {{"Authorization", "Bearer " + anne}}, problem.dump(),
+                                "application/json");
+  ASSERT_EQ(sent->status, 200);
+  const std::string id = json::parse(sent->body).at("id");
+  client.Delete("/v1/solves/" + id, {{"Authorization", "Bearer " + anne}});
+  const std::string log = daemon.process().standard_error();
+  for (const char* change : {" accepted", " deleted"}) {
+    const std::size_t at = log.find(change);
+    ASSERT_NE(at, std::string::npos) << log;
+    const std::string line = log.substr(log.rfind('\n', at) + 1, at - log.rfind('\n', at));
+    for (const std::string& part :
+         {std::string("client=anne"), std::string("address=127.0.0.1"), "job=" + id})
+      EXPECT_NE(line.find(part), std::string::npos) << line;
+  }
+
+  EXPECT_EQ(status(bert), 401);
+  std::ofstream(file) << "bert read " << bert << "\n";
+  daemon.process().signal(SIGHUP);
+  wait_for_status(bert, 400);  // the service knows no such parameter
+  EXPECT_EQ(status(anne), 401);
+  std::ofstream(file) << "nonsense\n";
+  daemon.process().signal(SIGHUP);
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(status(bert), 400);
+  EXPECT_NE(daemon.process().standard_error().find("stay as they were"), std::string::npos);
+  for (const std::string& token : {anne, bert})
+    EXPECT_EQ(daemon.process().standard_error().find(token), std::string::npos)
+        << daemon.process().standard_error();
+}
+
+TEST(Hangup, EndsNoService) {
+  Daemon daemon;
+  daemon.process().signal(SIGHUP);
+  std::this_thread::sleep_for(300ms);
+  httplib::Client client("127.0.0.1", daemon.port());
+  const auto reply = client.Get("/healthz");
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->status, 200);
+}
+
+}  // namespace
+}  // namespace signorini::server
