@@ -62,6 +62,13 @@ HttpError method_not_allowed(const std::string& method, const std::string& allow
       {{"Allow", allow}}};
 }
 
+/// To OPTIONS for the service as a whole (RFC 9110, 9.3.7).
+Response options() {
+  Response response = Response::empty(204);
+  response.headers.emplace_back("Allow", "GET, HEAD, POST, DELETE, OPTIONS");
+  return response;
+}
+
 }  // namespace
 
 bool Router::is_for_probes(std::string_view path) const {
@@ -70,27 +77,44 @@ bool Router::is_for_probes(std::string_view path) const {
   });
 }
 
-Response Router::route(Request& request) const {
+Router::Found Router::find(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
-  const Route* found = nullptr;
-  std::string allow;
+  Found found;
   for (const Route& route : routes_) {
     std::optional<PathParameters> parameters = match(route.pattern, request.path);
     if (!parameters) continue;
     request.route = route.pattern;
-    allow += (allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
-    if (found != nullptr || route.method != method) continue;
-    found = &route;
+    found.allow += (found.allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
+    if (found.route != nullptr || route.method != method) continue;
+    found.route = &route;
     request.path_parameters = std::move(*parameters);
   }
-  const Audience audience = found == nullptr ? Audience::clients : found->audience;
-  if (audience != Audience::probes) access_.count(request);
-  if (!allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(allow);
-  if (audience == Audience::clients) access_.require_token(request);
-  if (allow.empty()) throw HttpError(404, details_of_status(404));
-  if (found == nullptr) throw method_not_allowed(request.method, allow);
-  request.reply_type = negotiate(request, *found);
-  return found->handler(request);
+  return found;
+}
+
+const Route& Router::require(Request& request, const Found& found) const {
+  if (found.audience() == Audience::clients) access_.require_token(request);
+  if (found.allow.empty()) throw not_found();
+  if (found.route == nullptr) throw method_not_allowed(request.method, found.allow);
+  request.reply_type = negotiate(request, *found.route);
+  return *found.route;
+}
+
+bool Router::refuses(Request& request) const {
+  try {
+    require(request, find(request));
+    return false;
+  } catch (const HttpError&) {
+    return true;
+  }
+}
+
+Response Router::route(Request& request) const {
+  if (request.path == "*") return options();
+  const Found found = find(request);
+  if (found.audience() != Audience::probes) access_.count(request);
+  if (!found.allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(found.allow);
+  return require(request, found).handler(request);
 }
 
 }  // namespace signorini::server

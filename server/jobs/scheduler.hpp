@@ -47,11 +47,6 @@ class Scheduler {
   /// called.
   std::string submit(NewJob job);
 
-  /// The job when it has ended, or as it is when the time is over or `given_up`, which is asked now and then,
-  /// says so; nothing if it is gone.
-  std::optional<Job> wait(const std::string& id, std::chrono::duration<double> time,
-                          const std::function<bool()>& given_up = {});
-
   /// What happens to a job from now on. One that has ended is never `over`: ask the store after this call.
   std::shared_ptr<const Watch> watch(const std::string& id);
 
@@ -107,10 +102,9 @@ class Scheduler {
   // Never held while the store is asked, which may take as long as a disk does.
   mutable std::mutex mutex_;
   std::condition_variable queued_;  ///< a job was queued, or drain, or stop
-  std::condition_variable ended_;   ///< a job ended, or a thread has
+  std::condition_variable ended_;   ///< a thread has
   bool draining_ = false;
   bool stopping_ = false;
-  bool stopped_ = false;
   int working_;  ///< threads that have a job or would take one
   std::uint64_t submissions_ = 0;
   std::map<std::string, std::shared_ptr<LiveSolve>> live_;
