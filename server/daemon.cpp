@@ -48,7 +48,8 @@ void require_tokens_beyond_loopback(const DaemonConfig& config) {
 
 Access access_of(const DaemonConfig& config) {
   return {config.token_file.empty() ? BearerTokens() : BearerTokens(config.token_file),
-          RequestRate(config.rate), Cors(config.cors_origins)};
+          RequestRate(config.rate), Cors(config.cors_origins),
+          is_loopback(config.host) ? KnownHosts(config.allowed_hosts) : KnownHosts()};
 }
 
 /// Takes no more solves, and lets the running ones end as long as there is time and no second signal.

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <sstream>
 
-#include <arpa/inet.h>
-
 #include "server/http/error.hpp"
 
 namespace signorini::server {
@@ -30,14 +28,6 @@ void Access::require_token(const Request& request) const {
        authorization ? "The Authorization header holds none of the tokens of this service (--token-file)."
                      : "This service wants a token (--token-file): send `Authorization: Bearer TOKEN`."},
       {{"WWW-Authenticate", "Bearer"}});
-}
-
-bool is_loopback(const std::string& host) {
-  if (host == "localhost") return true;
-  in_addr ipv4{};
-  if (inet_pton(AF_INET, host.c_str(), &ipv4) == 1) return (ntohl(ipv4.s_addr) >> 24) == 127;
-  in6_addr ipv6{};
-  return inet_pton(AF_INET6, host.c_str(), &ipv6) == 1 && IN6_IS_ADDR_LOOPBACK(&ipv6);
 }
 
 }  // namespace signorini::server

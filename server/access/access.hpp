@@ -2,6 +2,7 @@
 
 #include "server/access/bearer_tokens.hpp"
 #include "server/access/cors.hpp"
+#include "server/access/known_hosts.hpp"
 #include "server/access/request_rate.hpp"
 
 namespace signorini::server {
@@ -11,15 +12,16 @@ struct Access {
   BearerTokens tokens;
   RequestRate rate{0};
   Cors cors;
+  KnownHosts hosts = {};
 
   /// Throws HttpError 429 if the client asks too often.
   void count(const Request& request);
 
+  /// Throws HttpError 421 or 403 if a page of another site may be behind the request.
+  void require_known_host(const Request& request) const { hosts.require(request, cors); }
+
   /// Throws HttpError 401 if the client does not show a token.
   void require_token(const Request& request) const;
 };
-
-/// Whether a host is reached from this machine only: `localhost`, 127.0.0.0/8 and ::1.
-bool is_loopback(const std::string& host);
 
 }  // namespace signorini::server

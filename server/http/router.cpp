@@ -93,6 +93,7 @@ Router::Found Router::find(Request& request) const {
 }
 
 const Route& Router::require(Request& request, const Found& found) const {
+  access_.require_known_host(request);
   if (found.audience() == Audience::clients) access_.require_token(request);
   if (found.allow.empty()) throw not_found();
   if (found.route == nullptr) throw method_not_allowed(request.method, found.allow);

@@ -37,8 +37,8 @@ class Router {
       std::vector<Route> routes, Access& access, ReplyObserver observer = [](auto&&...) {})
       : routes_(std::move(routes)), access_(access), observer_(std::move(observer)) {}
 
-  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 401, 404, 405 (with
-  /// Allow) and 406.
+  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 421, 403, 401, 404,
+  /// 405 (with Allow) and 406.
   Response route(Request& request) const;
 
   /// Whether the request will be refused whatever its body says: 401, 404, 405, 406 and the like.
