@@ -120,7 +120,6 @@ void MessageReader::take(std::string_view bytes) {
 
 void MessageReader::advance() {
   try {
-    if (stage_ == Stage::nothing) skip_empty_lines();
     if (stage_ == Stage::nothing || stage_ == Stage::head) look_for_end_of_head();
     if (stage_ == Stage::body) read_body();
   } catch (const HttpError& error) {
@@ -128,34 +127,35 @@ void MessageReader::advance() {
   }
 }
 
-/// Which some clients send after a body (RFC 9112, 2.2).
-void MessageReader::skip_empty_lines() {
-  constexpr std::size_t most = 4;
-  while (empty_lines_ < most && bytes_.starts_with("\r\n")) {
-    bytes_.erase(0, 2);
-    ++empty_lines_;
-  }
-}
-
 /// Judges line ends on the way: Beast would fold lines and, of a head without a sound end, never see one.
 void MessageReader::look_for_end_of_head() {
-  if (!bytes_.empty()) stage_ = Stage::head;
-  for (; scanned_ < bytes_.size(); ++scanned_) {
+  while (scanned_ < bytes_.size()) {
     const char before = scanned_ > 0 ? bytes_[scanned_ - 1] : '\0';
-    const char c = bytes_[scanned_];
+    const char c = bytes_[scanned_++];
     if ((before == '\r') != (c == '\n')) throw bad_request("A line does not end with CR and LF together.");
     if (before == '\n' && (c == ' ' || c == '\t'))
       throw bad_request("A line of the head begins with a blank.");
     if (c != '\n') continue;
-    if (scanned_ == 1) throw bad_request("The request begins with too many empty lines.");
-    ++line_ends_;
-    if (scanned_ >= 3 && bytes_[scanned_ - 2] == '\n') return read_head(scanned_ + 1);
+    if (scanned_ == 2) {
+      skip_empty_line();
+    } else if (++line_ends_ > 1 && bytes_[scanned_ - 3] == '\n') {
+      return read_head(scanned_);
+    }
   }
+  stage_ = bytes_.empty() ? Stage::nothing : Stage::head;
   constexpr std::size_t around_target = 32;
   if (line_ends_ == 0 && scanned_ > limits_.target + around_target) {
     throw bytes_.find(' ') == std::string::npos ? unknown_method() : target_too_long(limits_);
   }
   if (scanned_ >= limits_.head) throw head_too_long(limits_);
+}
+
+/// Some clients send one after a body (RFC 9112, 2.2).
+void MessageReader::skip_empty_line() {
+  constexpr std::size_t most = 4;
+  if (++empty_lines_ > most) throw bad_request("The request begins with too many empty lines.");
+  bytes_.erase(0, scanned_);
+  scanned_ = 0;
 }
 
 void MessageReader::read_head(std::size_t size) {

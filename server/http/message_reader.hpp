@@ -63,8 +63,8 @@ class MessageReader {
   class Parser;
 
   void advance();
-  void skip_empty_lines();
   void look_for_end_of_head();
+  void skip_empty_line();
   void read_head(std::size_t size);
   void read_body();
   void judge_rest_of_chunks() const;
