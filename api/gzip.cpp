@@ -52,4 +52,43 @@ bool Gzip::finish() {
   return deflate_->put({}, Z_FINISH, sink_);
 }
 
+namespace {
+
+/// zlib's state.
+class Inflate {
+ public:
+  explicit Inflate(Coding coding) {
+    if (inflateInit2(&stream, coding == Coding::gzip ? 16 + MAX_WBITS : MAX_WBITS) != Z_OK)
+      throw std::bad_alloc();
+  }
+  ~Inflate() { inflateEnd(&stream); }
+
+  Inflate(const Inflate&) = delete;
+  Inflate& operator=(const Inflate&) = delete;
+
+  z_stream stream{};
+};
+
+}  // namespace
+
+Inflation inflate(std::string_view bytes, Coding coding, std::size_t longest, std::string& text) {
+  Inflate state(coding);
+  z_stream& stream = state.stream;
+  stream.next_in = reinterpret_cast<const Bytef*>(bytes.data());
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  std::array<char, 32 * 1024> out;
+  for (;;) {
+    stream.next_out = reinterpret_cast<Bytef*>(out.data());
+    stream.avail_out = static_cast<uInt>(out.size());
+    const int status = ::inflate(&stream, Z_NO_FLUSH);
+    const std::size_t written = out.size() - stream.avail_out;
+    if (written > longest - text.size()) return Inflation::too_long;
+    text.append(out.data(), written);
+    if (status == Z_STREAM_END && stream.avail_in == 0) return Inflation::whole;
+    const bool next_member =
+        status == Z_STREAM_END && coding == Coding::gzip && inflateReset(&stream) == Z_OK;
+    if (status != Z_OK && !next_member) return Inflation::broken;
+  }
+}
+
 }  // namespace signorini::api

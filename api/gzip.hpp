@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "api/piece_writer.hpp"
 
@@ -29,5 +31,12 @@ class Gzip {
   const Sink& sink_;
   std::unique_ptr<Deflate> deflate_;
 };
+
+enum class Coding { gzip, zlib };  ///< RFC 1952, RFC 1950
+enum class Inflation { whole, too_long, broken };
+
+/// Decompresses a text whose end must be there, of at most `longest` bytes; gzip may have several members.
+/// The text says nothing unless it is whole.
+Inflation inflate(std::string_view bytes, Coding coding, std::size_t longest, std::string& text);
 
 }  // namespace signorini::api

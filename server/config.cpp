@@ -66,6 +66,13 @@ void add_access_flags(CLI::App& app, DaemonConfig& daemon) {
       ->default_str("")
       ->delimiter(',')
       ->allow_extra_args(false);
+  add_flag(app, "--allow-host", daemon.allowed_hosts,
+           "Name other than localhost by which a service on the loopback may be reached, as by a proxy; "
+           "several may "
+           "be given")
+      ->default_str("")
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 void add_daemon_flags(CLI::App& app, DaemonConfig& daemon) {

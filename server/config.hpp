@@ -27,6 +27,7 @@ struct DaemonConfig {
   std::string token_file;
   bool insecure = false;
   std::vector<std::string> cors_origins;
+  std::vector<std::string> allowed_hosts;
   std::int64_t drain_seconds = 20;
 };
 

@@ -22,16 +22,12 @@
 namespace signorini::server {
 namespace {
 
-/// A client that waits for its solve holds a thread; 64 are left for all others, so that health and status
-/// are answered meanwhile.
-std::size_t http_threads(const DaemonConfig& config) {
-  constexpr std::size_t for_others = 64;
-  constexpr std::size_t most_waiting = 448;
-  return for_others + std::min(config.queue_limit + static_cast<std::size_t>(config.workers), most_waiting);
-}
-
 ListenerOptions listener_options(const DaemonConfig& config) {
-  return {config.host, config.port, http_threads(config), config.max_body_bytes};
+  ListenerOptions options;
+  options.host = config.host;
+  options.port = config.port;
+  options.max_body_bytes = config.max_body_bytes;
+  return options;
 }
 
 std::string url(const std::string& host, int port) {
@@ -55,7 +51,8 @@ void require_tokens_beyond_loopback(const DaemonConfig& config) {
 
 Access access_of(const DaemonConfig& config) {
   return {config.token_file.empty() ? BearerTokens() : BearerTokens(config.token_file),
-          RequestRate(config.rate), Cors(config.cors_origins)};
+          RequestRate(config.rate), Cors(config.cors_origins),
+          is_loopback(config.host) ? KnownHosts(config.allowed_hosts) : KnownHosts()};
 }
 
 void read_tokens_again(BearerTokens& tokens) {

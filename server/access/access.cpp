@@ -3,8 +3,6 @@
 #include <cmath>
 #include <sstream>
 
-#include <arpa/inet.h>
-
 #include "server/http/error.hpp"
 
 namespace signorini::server {
@@ -54,19 +52,14 @@ Identity Access::require(const Request& request, Scope scope) const {
   std::optional<Identity> identity = tokens.identify(authorization);
   if (!identity) throw unauthorized(authorization.has_value());
   if (!identity->may(scope)) throw out_of_scope(identity->name, scope);
-  const auto wait = tokens.count(*identity);
-  if (wait.count() > 0)
-    throw too_often(in_words(identity->rate) + "`" + identity->name + "`, which is its limit (--token-file).",
-                    wait);
   return *std::move(identity);
 }
 
-bool is_loopback(const std::string& host) {
-  if (host == "localhost") return true;
-  in_addr ipv4{};
-  if (inet_pton(AF_INET, host.c_str(), &ipv4) == 1) return (ntohl(ipv4.s_addr) >> 24) == 127;
-  in6_addr ipv6{};
-  return inet_pton(AF_INET6, host.c_str(), &ipv6) == 1 && IN6_IS_ADDR_LOOPBACK(&ipv6);
+void Access::count(const Identity& identity) const {
+  const auto wait = tokens.count(identity);
+  if (wait.count() > 0)
+    throw too_often(in_words(identity.rate) + "`" + identity.name + "`, which is its limit (--token-file).",
+                    wait);
 }
 
 }  // namespace signorini::server

@@ -23,9 +23,9 @@ class Cors {
   /// Tells the browser that the page may read the reply, if it may.
   void mark(const Request& request, Response& response) const;
 
- private:
   bool allows(const std::string& origin) const;
 
+ private:
   std::vector<std::string> origins_;
 };
 

@@ -17,7 +17,7 @@ std::string content_type_of(std::string_view file) {
 
 Response page_response(std::string_view file) {
   const auto page = std::ranges::find(pages(), file, &Page::name);
-  if (page == pages().end()) throw HttpError(404, details_of_status(404));
+  if (page == pages().end()) throw not_found();
   Response response = Response::empty(200);
   response.content_type = content_type_of(file);
   response.body = page->text;

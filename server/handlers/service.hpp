@@ -5,6 +5,7 @@
 
 #include "server/access/access.hpp"
 #include "server/http/event_streams.hpp"
+#include "server/http/places.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/store.hpp"
@@ -18,6 +19,7 @@ struct Limits {
   std::size_t max_body_bytes = 16 << 20;
   std::int64_t max_unknowns = 20'000'000;
   double max_memory = std::numeric_limits<double>::infinity();  ///< bytes that a solve may take
+  std::size_t max_waits = 4096;  ///< clients that may wait for their solves at the same time
 };
 
 /// What the handlers work on.
@@ -30,6 +32,7 @@ struct Service {
   const KeptOperators& operators;
   Metrics& metrics;
   UniqueIds ids = {};
+  Places waits{limits.max_waits};  ///< of clients that wait
 };
 
 }  // namespace signorini::server

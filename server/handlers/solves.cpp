@@ -10,10 +10,9 @@
 #include "server/handlers/find_job.hpp"
 #include "server/handlers/intake.hpp"
 #include "server/handlers/wait.hpp"
-#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
-#include "server/log.hpp"
+#include "server/http/sender_fields.hpp"
 
 namespace signorini::server {
 namespace {
@@ -147,29 +146,51 @@ std::optional<std::string> idempotency_key(const Request& request) {
   return key;
 }
 
-/// The reply to a client that waited for its solve.
-Response answer_after_wait(Service& service, const Request& request, Job job,
-                           const api::ResultFields& fields) {
-  if (!has_ended(job.status)) return status_response(service, request, 202, std::move(job));
-  if (!job.verdict.summary) return status_response(service, request, 200, std::move(job));
-  JobWithResult ended =
-      picks_summary_alone(request) ? with_summary(std::move(job)) : with_result(service, std::move(job));
-  return result_response(request, std::move(ended), fields);
+/// The reply to a client whose solve was taken in; `waited` if it wants the result, should it be there.
+Response answer(Service& service, const Request& request, std::optional<Job> job, bool waited,
+                const api::ResultFields& fields) {
+  if (!job) {
+    throw HttpError(410, {"deleted", "The solve was deleted", "It was deleted before it could be answered."});
+  }
+  const std::string location = link_to(job->id);
+  const bool ended = waited && has_ended(job->status);
+  Response response = ended && job->verdict.summary
+                          ? result_response(request,
+                                           picks_summary_alone(request) ? with_summary(std::move(*job))
+                                                                        : with_result(service, std::move(*job)),
+                                           fields)
+                          : status_response(service, request, ended ? 200 : 202, std::move(*job));
+  response.headers.emplace_back("Location", location);
+  return response;
 }
 
-/// The job when it has ended or the time is over. A client that leaves before takes its solve along if it
-/// said so.
-std::optional<Job> wait_for(Service& service, const Request& request, const std::string& id,
-                            const Wait& wait) {
-  const Crew::Rest rest;
-  if (!wait.or_cancel) return service.scheduler.wait(id, wait.time);
-  std::optional<Job> job = service.scheduler.wait(id, wait.time, request.client_left);
-  if (job && !has_ended(job->status) && request.client_left()) {
-    const LogField field("job", id);
-    spdlog::info("the client left");
-    service.scheduler.cancel(id);
-  }
-  return job;
+/// Answers when the solve has ended or the time is over. A client that leaves before takes its solve along if
+/// it said so.
+Response answer_later(Service& service, const Request& request, const std::string& id, const Wait& wait,
+                      const api::ResultFields& fields, std::shared_ptr<void> place) {
+  using Clock = std::chrono::steady_clock;
+  const auto watch = service.scheduler.watch(id);
+  LaterReply promise;
+  promise.until = Clock::now() + std::chrono::duration_cast<Clock::duration>(wait.time);
+  promise.place = std::move(place);
+  promise.subscribe = [watch](std::function<void()> ready) { return watch->tell(std::move(ready)); };
+  promise.make = [&service, &request, id, wait, fields](bool client_left) {
+    if (client_left && wait.or_cancel) {
+      const SenderFields sender(request);
+      const LogField field("job", id);
+      spdlog::info("the client left");
+      service.scheduler.cancel(id);
+    }
+    Response response = answer(service, request, service.store.find(id), true, fields);
+    if (wait.preferred) response.headers.emplace_back("Preference-Applied", *wait.preferred);
+    return response;
+  };
+  // Asked after it is watched: if it had ended before, nobody would tell.
+  const std::optional<Job> job = service.store.find(id);
+  if (!job || has_ended(job->status)) return promise.make(false);
+  Response response;
+  response.later = std::make_shared<LaterReply>(std::move(promise));
+  return response;
 }
 
 JobStatus status_of_name(const std::string& status_name) {
@@ -204,14 +225,11 @@ Response accept(Service& service, const Request& request,
   require_available(fields, components(intake.request.problem.material));
   const std::string id = submit(service, request, std::move(intake), key);
 
-  std::optional<Job> job = wait ? wait_for(service, request, id, *wait) : service.store.find(id);
-  if (!job)
-    throw HttpError(410, {"deleted", "The solve was deleted", "It was deleted before it could be answered."});
-  Response response = wait ? answer_after_wait(service, request, std::move(*job), fields)
-                           : status_response(service, request, 202, std::move(*job));
-  response.headers.emplace_back("Location", link_to(id));
-  if (wait && wait->preferred) response.headers.emplace_back("Preference-Applied", *wait->preferred);
-  return response;
+  if (!wait) return answer(service, request, service.store.find(id), false, fields);
+  // Where too many wait, nobody is refused for it: the status document says how to go on.
+  std::shared_ptr<void> place = service.waits.take();
+  if (!place) return answer(service, request, service.store.find(id), true, fields);
+  return answer_later(service, request, id, *wait, fields, std::move(place));
 }
 
 }  // namespace

@@ -1,21 +1,44 @@
 #include "server/http/connection.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <utility>
 
+#include <netdb.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/http/crew.hpp"
+
 namespace signorini::server {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr int nobody = -1;
+
+/// Waits until the descriptor is ready or the time is over; an interrupted wait goes on.
+bool poll_until(int descriptor, short events, Clock::time_point until) {
+  pollfd polled{descriptor, events, 0};
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    const int ready = ::poll(&polled, 1, static_cast<int>(std::max<decltype(left)>(0, left)));
+    if (ready > 0) return true;
+    if (ready == 0 || errno != EINTR) return false;
+  }
+}
 
 }  // namespace
 
-Connection::Connection(int socket, int stop_event, const StreamLimits& limits, Places& slow_readers,
+Connection::Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
                        std::shared_ptr<void> place)
-    : place_(std::move(place)), socket_(socket), stream_(socket, stop_event, limits, slow_readers) {}
+    : place_(std::move(place)),
+      socket_(socket),
+      stop_event_(stop_event),
+      slow_readers_(slow_readers),
+      reader_(limits) {}
 
 Connection::~Connection() {
   if (socket_ == nobody) return;
@@ -23,15 +46,75 @@ Connection::~Connection() {
   ::close(socket_);
 }
 
-bool Connection::client_left() const {
-  pollfd client{socket_, POLLRDHUP, 0};
-  return ::poll(&client, 1, 0) > 0;
+std::string Connection::remote_address() const {
+  sockaddr_storage address{};
+  socklen_t length = sizeof(address);
+  auto* generic = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, NI_MAXHOST> host{};
+  if (::getpeername(socket_, generic, &length) != 0) return {};
+  if (getnameinfo(generic, length, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
+  return host.data();
 }
 
-bool Connection::give_away() {
-  if (!taker_) return false;
-  taker_(std::exchange(socket_, nobody));
+Receipt Connection::receive() {
+  std::array<char, 16 * 1024> bytes;
+  const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return Receipt::nothing;
+  if (count <= 0) return Receipt::closed;
+  if (!ended_) reader_.take({bytes.data(), static_cast<std::size_t>(count)});
+  return Receipt::bytes;
+}
+
+bool Connection::stopping() const {
+  return poll_until(stop_event_, POLLIN, Clock::now());
+}
+
+/// False if the client takes too little, or is one slow reader too many.
+bool Connection::wait_writable() {
+  constexpr auto moment = std::chrono::milliseconds(20);
+  if (poll_until(socket_, POLLOUT, Clock::now())) return true;
+  const Crew::Rest rest;
+  if (poll_until(socket_, POLLOUT, Clock::now() + moment)) return true;
+  if (Clock::now() - patient_since_ > limits_.time) {
+    if (taken_since_ < limits_.bytes) return false;
+    patient_since_ = Clock::now();
+    taken_since_ = 0;
+  }
+  const std::shared_ptr<void> place = slow_readers_.take();
+  const auto patience = stopping() ? std::chrono::seconds(1) : limits_.time;
+  return place && poll_until(socket_, POLLOUT, Clock::now() + patience);
+}
+
+void Connection::begin_reply() {
+  patient_since_ = Clock::now();
+  taken_since_ = 0;
+}
+
+bool Connection::send(std::string_view bytes, bool more) {
+  while (!bytes.empty()) {
+    if (!wait_writable()) return false;
+    const ssize_t sent =
+        ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0));
+    if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (sent <= 0) return false;
+    taken_since_ += static_cast<std::uint64_t>(sent);
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
   return true;
+}
+
+void Connection::send_at_once(std::string_view text) const {
+  [[maybe_unused]] const ssize_t sent =
+      ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void Connection::end_sending() {
+  ended_ = true;
+  ::shutdown(socket_, SHUT_WR);
+}
+
+int Connection::give_away() {
+  return std::exchange(socket_, nobody);
 }
 
 }  // namespace signorini::server

@@ -1,38 +1,75 @@
 #pragma once
 
-#include <functional>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
 
-#include "server/http/socket_stream.hpp"
+#include "server/http/message_reader.hpp"
+#include "server/http/places.hpp"
 
 namespace signorini::server {
+
+/// How long a client may take for a reply, so that none can hold a thread for ever.
+struct WriteLimits {
+  std::chrono::seconds time{30};    ///< to take some more of it,
+  std::uint64_t bytes = 64 * 1024;  ///< this much at least
+};
+
+/// What came of an attempt to receive.
+enum class Receipt { bytes, nothing, closed };
 
 /// One client's connection, from its acceptance until it is closed or given away.
 class Connection {
  public:
-  /// The place is kept as long as the connection is.
-  Connection(int socket, int stop_event, const StreamLimits& limits, Places& slow_readers,
+  /// The place is kept until it is left, or the connection is closed. `slow_readers` is how many clients may
+  /// keep a thread waiting until they take more of a reply; one more is left. Every wait ends when the stop
+  /// event (an eventfd of the listener) is signalled.
+  Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
              std::shared_ptr<void> place);
   ~Connection();
 
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  SocketStream& stream() { return stream_; }
+  int socket() const { return socket_; }
+  MessageReader& reader() { return reader_; }
+  /// Of the client, in numbers.
+  std::string remote_address() const;
 
-  /// Whether the client has closed it, its sending side at least.
-  bool client_left() const;
+  void keep_place(std::shared_ptr<void> place) { place_ = std::move(place); }
 
-  /// Who is to have the socket after this exchange, and will close it.
-  void give_away_to(std::function<void(int socket)> taker) { taker_ = std::move(taker); }
+  /// Takes what has come, some 16 KiB at most, without waiting, and gives it to the reader.
+  Receipt receive();
 
-  /// Gives the socket away if somebody is to have it.
-  bool give_away();
+  /// From now on the client is to take a reply.
+  void begin_reply();
+  /// Sends all of it; false if the client does not take it. `more` follows at once.
+  bool send(std::string_view bytes, bool more = false);
+  /// Sends as much of it as the client takes at once.
+  void send_at_once(std::string_view text) const;
+  /// Ends the sending side. What the client sends from now on is read over.
+  void end_sending();
+
+  /// The socket, for somebody else to close.
+  int give_away();
 
  private:
-  const std::shared_ptr<void> place_;
+  using Clock = std::chrono::steady_clock;
+
+  bool stopping() const;
+  bool wait_writable();
+
+  std::shared_ptr<void> place_;
   int socket_;
-  SocketStream stream_;
-  std::function<void(int socket)> taker_;
+  const int stop_event_;
+  const WriteLimits limits_;
+  Places& slow_readers_;
+  MessageReader reader_;
+  bool ended_ = false;
+  Clock::time_point patient_since_;
+  std::uint64_t taken_since_ = 0;
 };
 
 }  // namespace signorini::server

@@ -1,6 +1,11 @@
 #include "server/http/content.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
 #include "api/gzip.hpp"
+#include "server/http/error.hpp"
 
 namespace signorini::server {
 namespace {
@@ -23,6 +28,27 @@ std::string compressed(const std::string& body) {
   };
   write_compressed([&](const PieceSink& sink) { return sink(body); }, append);
   return text;
+}
+
+/// By its names in any case; nothing if it is not known.
+std::optional<api::Coding> coding_of(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (name == "gzip" || name == "x-gzip") return api::Coding::gzip;
+  if (name == "deflate") return api::Coding::zlib;
+  return std::nullopt;
+}
+
+HttpError unknown_coding() {
+  return {415,
+          {"unsupported-media-type", "Unsupported media type",
+           "A body may be sent plain or with `Content-Encoding: gzip` or `deflate`."},
+          {{"Accept-Encoding", "gzip, deflate"}}};
+}
+
+HttpError broken_body() {
+  return {
+      400,
+      {"broken-body", "Broken body", "The body is not what Content-Encoding says, or ends before its end."}};
 }
 
 }  // namespace
@@ -51,6 +77,23 @@ void compress(Response& response) {
     return;
   }
   response.headers.emplace_back("Content-Encoding", "gzip");
+}
+
+std::string decoded(std::string body, const std::vector<std::string>& codings, std::size_t max_bytes) {
+  if (body.size() > max_bytes) throw body_too_large(max_bytes);
+  if (codings.empty() || (codings.size() == 1 && codings.front() == "identity")) return body;
+  const std::optional<api::Coding> coding = coding_of(codings.front());
+  if (codings.size() > 1 || !coding) throw unknown_coding();
+  std::string text;
+  switch (api::inflate(body, *coding, max_bytes, text)) {
+    case api::Inflation::whole:
+      return text;
+    case api::Inflation::too_long:
+      throw body_too_large(max_bytes);
+    case api::Inflation::broken:
+      break;
+  }
+  throw broken_body();
 }
 
 }  // namespace signorini::server

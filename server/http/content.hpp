@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "server/http/response.hpp"
 
 namespace signorini::server {
@@ -10,5 +13,9 @@ void take_if_short(Response& response);
 
 /// Compresses the body by gzip, if there is one and it is long enough to gain by it.
 void compress(Response& response);
+
+/// A body without its content codings (RFC 9110, 8.4.1), of at most so many bytes. Throws HttpError 415 if it
+/// has a coding that is not known, 400 if it is not what that says, to its end, and 413 if it is longer.
+std::string decoded(std::string body, const std::vector<std::string>& codings, std::size_t max_bytes);
 
 }  // namespace signorini::server

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include <spdlog/spdlog.h>
@@ -10,20 +11,40 @@
 #include "server/failure.hpp"
 #include "server/http/content.hpp"
 #include "server/http/error.hpp"
+#include "server/http/media_type.hpp"
+#include "server/http/query.hpp"
 #include "server/log.hpp"
+#include "server/unique_id.hpp"
 
 namespace signorini::server {
 namespace {
 
-Response answer(const Router& router, Request& request) {
+/// Printable and short, so that it can stand in a header and in a line of the log.
+bool is_sane_id(const std::string& id) {
+  return !id.empty() && id.size() <= 64 &&
+         std::all_of(id.begin(), id.end(), [](char c) { return c > ' ' && c <= '~'; });
+}
+
+std::string new_request_id() {
+  static UniqueIds ids;
+  return ids.next();
+}
+
+Response response_of(const HttpError& error) {
+  Response response = problem_response(error.status, error.details);
+  response.headers = error.headers;
+  return response;
+}
+
+/// What `make` returns, or the reason why it does not.
+template <typename Make>
+Response made_by(const Make& make) {
   try {
-    Response response = router.route(request);
+    Response response = make();
     take_if_short(response);
     return response;
   } catch (const HttpError& error) {
-    Response response = problem_response(error.status, error.details);
-    response.headers = error.headers;
-    return response;
+    return response_of(error);
   } catch (...) {
     const Failure failure = describe(std::current_exception());
     Response response = problem_response(failure.status, failure.details);
@@ -48,26 +69,25 @@ std::string for_log(std::string text) {
   return text;
 }
 
-}  // namespace
+/// What every line of the log says while a request is worked on: its id, and its trace if it has one.
+class RequestFields {
+ public:
+  explicit RequestFields(const Request& request) : request_("request", request.id) {
+    if (request.trace) trace_.emplace("trace", request.trace->id);
+  }
 
-Response dispatch(const Router& router, Request& request) {
-  const RequestFields fields(request);
-  const auto begin = std::chrono::steady_clock::now();
-  Response response = answer(router, request);
+ private:
+  LogField request_;
+  std::optional<LogField> trace_;
+};
+
+/// Adds the headers that every reply has, writes the line of the log, tells the router's observer.
+void finish(const Router& router, const Request& request, Response& response) {
   if (request.accepts_gzip) compress(response);
   router.mark(request, response);
-  finish_reply(router, request, response, std::chrono::steady_clock::now() - begin);
-  return response;
-}
-
-RequestFields::RequestFields(const Request& request) : request_("request", request.id) {
-  if (request.trace) trace_.emplace("trace", request.trace->id);
-}
-
-void finish_reply(const Router& router, const Request& request, Response& response,
-                  std::chrono::duration<double> time) {
   response.headers.emplace_back("X-Request-Id", request.id);
   if (request.trace) response.headers.emplace_back("traceparent", traceparent(*request.trace));
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - request.begun;
   const LogField method("method", for_log(request.method)), path("path", for_log(request.target));
   const LogField status("status", std::int64_t{response.status});
   std::optional<LogField> job;
@@ -77,6 +97,46 @@ void finish_reply(const Router& router, const Request& request, Response& respon
   const LogField milliseconds("ms", std::round(time.count() * 1e4) / 10);
   spdlog::info("answered");
   router.replied(request, response, time);
+}
+
+}  // namespace
+
+Request request_of(const Connection& connection, const Message& message) {
+  Request request;
+  request.begun = std::chrono::steady_clock::now();
+  request.remote_address = connection.remote_address();
+  request.method = message.method;
+  request.target = message.target;
+  request.host = message.host;
+  request.path = message.path;
+  request.query = read_query(message.query);
+  request.headers = message.headers;
+  const std::string id = request.header("X-Request-Id").value_or("");
+  request.id = is_sane_id(id) ? id : new_request_id();
+  request.trace = read_traceparent(request.header("traceparent").value_or(""));
+  request.accepts_gzip = accepts_coding(request.header("Accept-Encoding").value_or(""), "gzip");
+  return request;
+}
+
+Response dispatch(const Router& router, Request& request) {
+  const RequestFields fields(request);
+  Response response = made_by([&] { return router.route(request); });
+  if (!response.later) finish(router, request, response);
+  return response;
+}
+
+Response resume(const Router& router, const Request& request, const LaterReply& promised, bool client_left) {
+  const RequestFields fields(request);
+  Response response = made_by([&] { return promised.make(client_left); });
+  finish(router, request, response);
+  return response;
+}
+
+Response refuse(const Router& router, const Request& request, const HttpError& refusal) {
+  const RequestFields fields(request);
+  Response response = response_of(refusal);
+  finish(router, request, response);
+  return response;
 }
 
 }  // namespace signorini::server

@@ -1,29 +1,22 @@
 #pragma once
 
-#include <chrono>
-#include <optional>
-
+#include "server/http/connection.hpp"
+#include "server/http/error.hpp"
 #include "server/http/router.hpp"
-#include "server/log.hpp"
 
 namespace signorini::server {
 
+/// What the router is to know of a message, except for its body.
+Request request_of(const Connection& connection, const Message& message);
+
 /// Answers a request: routes it, turns whatever is thrown into problem+json, writes the line of the log.
-/// Never throws.
+/// Never throws. A reply that is promised for later is made by resume().
 Response dispatch(const Router& router, Request& request);
 
-/// What every line of the log says while a request is worked on: its id, and its trace if it has one.
-class RequestFields {
- public:
-  explicit RequestFields(const Request& request);
+/// Makes a reply that was promised.
+Response resume(const Router& router, const Request& request, const LaterReply& promised, bool client_left);
 
- private:
-  LogField request_;
-  std::optional<LogField> trace_;
-};
-
-/// Adds the headers that every reply has, writes the line of the log, tells the router's observer.
-void finish_reply(const Router& router, const Request& request, Response& response,
-                  std::chrono::duration<double> time);
+/// Answers a request that is refused before any route is asked.
+Response refuse(const Router& router, const Request& request, const HttpError& refusal);
 
 }  // namespace signorini::server

@@ -28,8 +28,17 @@ class HttpError : public std::runtime_error {
 /// The problem+json reply.
 Response problem_response(int status, const ProblemDetails& details);
 
-/// A refusal that the HTTP library pronounced: there is a status and nothing else.
-ProblemDetails details_of_status(int status);
+/// 400: what is wrong with the request.
+HttpError bad_request(const std::string& detail);
+
+/// 400: two who read the request could disagree about its end.
+HttpError ambiguous_length();
+
+/// 404: no route has the path.
+HttpError not_found();
+
+/// 408
+HttpError request_timeout();
 
 /// 413: more bytes than --max-body-bytes.
 HttpError body_too_large(std::size_t max_bytes);

@@ -22,7 +22,7 @@ struct ListenerOptions {
   std::size_t max_body_bytes = 16 << 20;
 };
 
-/// Serves a route table over HTTP. The only place that knows the server of the HTTP library.
+/// Serves a route table over HTTP/1.1.
 class Listener {
  public:
   /// Binds the address. Throws CannotListen.

@@ -3,32 +3,34 @@
 #include <algorithm>
 #include <array>
 #include <ranges>
+#include <utility>
 #include <vector>
 
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "server/http/arrival.hpp"
 #include "server/http/error.hpp"
+#include "server/http/reply.hpp"
 
 namespace signorini::server {
 namespace {
 
 constexpr int look_around_ms = 250;  // how late somebody is sent away
 
+constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+
 /// To a client whose request did not come in time.
 std::string too_late() {
-  const std::string body = problem_response(408, details_of_status(408)).body;
-  return "HTTP/1.1 408 Request Timeout\r\nConnection: close\r\nCache-Control: no-store\r\n"
-         "Content-Type: application/problem+json\r\nContent-Length: " +
-         std::to_string(body.size()) + "\r\n\r\n" + body;
+  const Response response = problem_response(408, request_timeout().details);
+  return reply_head(response, response.body.size()) + response.body;
 }
 
 }  // namespace
 
-Lobby::Lobby(const LobbyLimits& limits, Serve serve)
+Lobby::Lobby(const LobbyLimits& limits, Refuses refuses, Serve serve)
     : limits_(limits),
+      refuses_(std::move(refuses)),
       serve_(std::move(serve)),
       epoll_(epoll_create1(EPOLL_CLOEXEC)),
       wake_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
@@ -58,13 +60,13 @@ std::shared_ptr<void> Lobby::take_place() {
 
 void Lobby::admit(std::shared_ptr<Connection> connection) {
   const auto now = Clock::now();
-  enter({std::move(connection), now, now + limits_.idle, std::nullopt, false});
+  enter({std::move(connection), Stay::arriving, now, now + limits_.idle});
 }
 
 void Lobby::see_off(std::shared_ptr<Connection> connection) {
-  connection->stream().end_sending();
+  connection->end_sending();
   const auto now = Clock::now();
-  enter({std::move(connection), now, now + limits_.see_off, std::nullopt, true});
+  enter({std::move(connection), Stay::leaving, now, now + limits_.see_off});
 }
 
 void Lobby::stop() {
@@ -78,9 +80,8 @@ void Lobby::stop() {
   const std::lock_guard lock(mutex_);
   std::vector<int> sockets;
   for (const auto& [socket, guest] : guests_) sockets.push_back(socket);
-  for (const int socket : sockets) hear(socket);
+  for (const int socket : sockets) hear(socket, EPOLLIN);
   while (!guests_.empty()) remove(guests_.begin());
-  with_long_bodies_.clear();
 }
 
 void Lobby::run() {
@@ -96,7 +97,7 @@ void Lobby::run() {
         ::eventfd_read(wake_event_, &woken);
         let_in_long_bodies();
       } else {
-        hear(events[i].data.fd);
+        hear(events[i].data.fd, events[i].events);
       }
     }
     if (Clock::now() < look_around) continue;
@@ -108,89 +109,144 @@ void Lobby::run() {
 void Lobby::enter(Guest guest) {
   const std::lock_guard lock(mutex_);
   if (stopping_) return;
-  SocketStream& stream = guest.connection->stream();
-  const int socket = stream.socket();
-  bytes_ += stream.buffered().size();
+  const int socket = guest.connection->socket();
   const auto entered = guests_.emplace(socket, std::move(guest)).first;
   epoll_event readable{EPOLLIN, {.fd = socket}};
   epoll_ctl(epoll_, EPOLL_CTL_ADD, socket, &readable);
   // What came together with the request before.
-  if (!stream.buffered().empty()) judge(entered);
+  if (entered->second.stay == Stay::arriving) judge(entered);
 }
 
 /// Takes what a guest has sent.
-void Lobby::hear(int socket) {
+void Lobby::hear(int socket, std::uint32_t events) {
   const auto found = guests_.find(socket);
   if (found == guests_.end()) return;
-  SocketStream& stream = found->second.connection->stream();
-  const std::size_t before = stream.buffered().size();
-  const Receipt receipt = stream.receive();
-  if (found->second.leaving) stream.forget_buffered();
-  bytes_ += stream.buffered().size() - before;
+  Guest& guest = found->second;
+  Receipt receipt = Receipt::nothing;
+  if (guest.stay != Stay::queued_with_long_body) {
+    receipt = guest.connection->receive();
+  } else if ((events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0) {
+    receipt = Receipt::closed;
+  }
   if (receipt == Receipt::closed) {
     remove(found);
-  } else if (receipt == Receipt::bytes && !found->second.leaving) {
+  } else if (receipt == Receipt::bytes && guest.stay != Stay::leaving) {
     judge(found);
   }
   if (bytes_ > limits_.bytes) dismiss_largest();
 }
 
-/// Lets a guest in whose request has come.
-void Lobby::judge(Guests::iterator guest) {
-  const SocketStream& stream = guest->second.connection->stream();
-  const Arrival arrival = arrival_of(stream.buffered(), limits_.head, limits_.body);
-  if (arrival == Arrival::part) {
-    guest->second.deadline = deadline_of(guest->second);
-    return;
+/// Lets a guest in whose request has come, and sees to it that the rest of the others does.
+void Lobby::judge(Guests::iterator found) {
+  Guest& guest = found->second;
+  const MessageReader::Stage stage = guest.connection->reader().stage();
+  if (stage == MessageReader::Stage::whole) return serve(found);
+  if (stage == MessageReader::Stage::nothing) return;
+  if (!guest.begun) guest.begun = Clock::now();
+  if (stage == MessageReader::Stage::body) return judge_body(found);
+  guest.deadline = *guest.begun + limits_.arrival;
+  count(guest);
+}
+
+/// A body that is long, or that the client sends when it is told to, is not waited for in vain.
+void Lobby::judge_body(Guests::iterator found) {
+  Guest& guest = found->second;
+  MessageReader& reader = guest.connection->reader();
+  const bool is_long = reader.message().body.size() + reader.awaited() > limits_.short_body;
+  if ((is_long || reader.expects_continue()) && !std::exchange(guest.head_judged, true) &&
+      refuses_(*guest.connection)) {
+    reader.leave_body();
+    return serve(found);
   }
-  std::shared_ptr<Connection> connection = guest->second.connection;
-  remove(guest);
-  if (arrival == Arrival::whole) {
-    serve_(std::move(connection));
-  } else {
-    with_long_bodies_.push_back(std::move(connection));
+  count(guest);
+  if (guest.stay == Stay::arriving_with_long_body) return;
+  guest.deadline = *guest.begun + limits_.body_arrival;
+  if (is_long) {
+    guest.stay = Stay::queued_with_long_body;
+    ++queued_;
+    listen_to(guest);
     let_in_long_bodies();
+  } else if (reader.expects_continue()) {
+    reader.told_to_continue();
+    guest.connection->send_at_once(go_on);
   }
+}
+
+void Lobby::serve(Guests::iterator guest) {
+  std::shared_ptr<Connection> connection = guest->second.connection;
+  std::shared_ptr<void> body_place = guest->second.body_place;
+  remove(guest);
+  serve_(std::move(connection), std::move(body_place));
 }
 
 void Lobby::let_in_long_bodies() {
-  while (!with_long_bodies_.empty()) {
+  while (queued_ > 0) {
     std::shared_ptr<void> place = long_bodies_.take();
     if (!place) return;
-    with_long_bodies_.front()->stream().hold_while_body_comes(std::move(place));
-    serve_(std::move(with_long_bodies_.front()));
-    with_long_bodies_.pop_front();
+    const auto waits = [](const Guests::value_type& guest) {
+      return guest.second.stay == Stay::queued_with_long_body;
+    };
+    auto queued = guests_ | std::views::filter(waits);
+    Guest& next = std::ranges::min_element(queued, {}, [](const Guests::value_type& guest) {
+                    return guest.second.since;
+                  })->second;
+    --queued_;
+    next.stay = Stay::arriving_with_long_body;
+    next.body_place = std::move(place);
+    next.let_in = Clock::now();
+    next.deadline = next.let_in + limits_.long_arrival;
+    count(next);
+    listen_to(next);
+    MessageReader& reader = next.connection->reader();
+    if (!reader.expects_continue()) continue;
+    reader.told_to_continue();
+    next.connection->send_at_once(go_on);
   }
 }
 
-/// By when the rest of a request must be there.
-Lobby::Clock::time_point Lobby::deadline_of(Guest& guest) const {
-  if (!guest.begun) guest.begun = Clock::now();
-  const bool head_is_there = guest.connection->stream().buffered().find("\r\n\r\n") != std::string_view::npos;
-  return *guest.begun + (head_is_there ? limits_.body_arrival : limits_.arrival);
+/// Whether others could have the place of its long body with more right.
+bool Lobby::is_too_slow(const Guest& guest, Clock::time_point now) const {
+  if (queued_ == 0 || guest.stay != Stay::arriving_with_long_body || now - guest.let_in < limits_.slow)
+    return false;
+  const double seconds = std::chrono::duration<double>(now - guest.let_in).count();
+  return static_cast<double>(guest.connection->reader().message().body.size()) <
+         limits_.long_body_rate * seconds;
+}
+
+/// Counts what a guest has sent. Long bodies that come are counted by their places.
+void Lobby::count(Guest& guest) {
+  bytes_ -= guest.counted;
+  guest.counted = guest.body_place ? 0 : guest.connection->reader().size();
+  bytes_ += guest.counted;
+}
+
+void Lobby::listen_to(const Guest& guest) const {
+  const int socket = guest.connection->socket();
+  epoll_event event{guest.stay == Stay::queued_with_long_body ? EPOLLRDHUP : EPOLLIN, {.fd = socket}};
+  epoll_ctl(epoll_, EPOLL_CTL_MOD, socket, &event);
 }
 
 void Lobby::dismiss_late() {
   const auto now = Clock::now();
-  for (auto guest = guests_.begin(); guest != guests_.end();) {
-    const auto next = std::next(guest);
-    if (guest->second.deadline <= now) {
-      SocketStream& stream = guest->second.connection->stream();
-      if (!guest->second.leaving && !stream.buffered().empty()) stream.send_at_once(too_late());
-      remove(guest);
+  for (auto found = guests_.begin(); found != guests_.end();) {
+    const auto next = std::next(found);
+    const Guest& guest = found->second;
+    if (guest.deadline <= now || is_too_slow(guest, now)) {
+      if (guest.stay != Stay::leaving && guest.begun) guest.connection->send_at_once(too_late());
+      remove(found);
     }
-    guest = next;
+    found = next;
   }
 }
 
 void Lobby::dismiss_largest() {
-  remove(std::ranges::max_element(guests_, {}, [](const Guests::value_type& guest) {
-    return guest.second.connection->stream().buffered().size();
-  }));
+  remove(std::ranges::max_element(guests_, {},
+                                  [](const Guests::value_type& guest) { return guest.second.counted; }));
 }
 
 void Lobby::remove(Guests::iterator guest) {
-  bytes_ -= guest->second.connection->stream().buffered().size();
+  bytes_ -= guest->second.counted;
+  if (guest->second.stay == Stay::queued_with_long_body) --queued_;
   epoll_ctl(epoll_, EPOLL_CTL_DEL, guest->first, nullptr);
   guests_.erase(guest);
 }

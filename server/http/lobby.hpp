@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,25 +14,30 @@
 namespace signorini::server {
 
 struct LobbyLimits {
-  std::size_t connections = 4096;  ///< that are open, wherever they are
-  std::size_t bytes = 16 << 20;    ///< of requests that are still coming, all together
-  std::size_t head = 64 * 1024;    ///< bytes of one request's head, and of its body
-  std::size_t body = 32 * 1024;
-  std::size_t long_bodies = 32;           ///< longer ones that are read at the same time
-  std::chrono::seconds idle{30};          ///< for the first bytes of a request
-  std::chrono::seconds arrival{10};       ///< for its head, from then on
-  std::chrono::seconds body_arrival{60};  ///< for all of it
-  std::chrono::seconds see_off{2};        ///< for a client to notice that it has been answered
+  std::size_t connections = 4096;  ///< that are open, and not given away
+  std::size_t bytes = 16 << 20;    ///< of requests that are still coming, all together but for long bodies
+  std::size_t short_body = 32 * 1024;
+  std::size_t long_bodies = 16;            ///< that come at the same time
+  double long_body_rate = 16 * 1024;       ///< bytes a second, while others wait for its place
+  std::chrono::seconds slow{5};            ///< after which the rate counts
+  std::chrono::seconds idle{30};           ///< for the first bytes of a request
+  std::chrono::seconds arrival{10};        ///< for its head, from then on
+  std::chrono::seconds body_arrival{60};   ///< for all of it, or for its long body to be let in,
+  std::chrono::seconds long_arrival{300};  ///< and for all of that from then on
+  std::chrono::seconds see_off{2};         ///< for a client to notice that it has been answered
 };
 
 /// Where connections wait, without a thread each, until a whole request has come: slow and silent clients
-/// cost some bytes and a descriptor. Bodies that are too long to wait for here are let in a few at a time.
+/// cost some bytes and a descriptor. Of long bodies only a few come at a time; the others wait in their
+/// sockets.
 class Lobby {
  public:
-  /// Takes a connection whose request has come.
-  using Serve = std::function<void(std::shared_ptr<Connection>)>;
+  /// Takes a connection whose request has come, with the place of its body if that is long.
+  using Serve = std::function<void(std::shared_ptr<Connection>, std::shared_ptr<void> body_place)>;
+  /// Whether a request is refused by its head, so that its body need not come.
+  using Refuses = std::function<bool(Connection&)>;
 
-  Lobby(const LobbyLimits& limits, Serve serve);
+  Lobby(const LobbyLimits& limits, Refuses refuses, Serve serve);
   ~Lobby();
 
   Lobby(const Lobby&) = delete;
@@ -56,26 +60,38 @@ class Lobby {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// What a guest is waited for with.
+  enum class Stay { arriving, queued_with_long_body, arriving_with_long_body, leaving };
+
   struct Guest {
     std::shared_ptr<Connection> connection;
+    Stay stay;
     Clock::time_point since;
     Clock::time_point deadline;
-    std::optional<Clock::time_point> begun;  ///< when the first bytes of the request came
-    bool leaving = false;
+    std::optional<Clock::time_point> begun = {};  ///< when the first bytes of the request came
+    bool head_judged = false;
+    std::shared_ptr<void> body_place = {};
+    Clock::time_point let_in = {};  ///< with the long body
+    std::size_t counted = 0;        ///< of `bytes_`
   };
   using Guests = std::map<int, Guest>;  ///< by socket
 
   void run();
   void enter(Guest guest);
-  void hear(int socket);
+  void hear(int socket, std::uint32_t events);
   void judge(Guests::iterator guest);
-  Clock::time_point deadline_of(Guest& guest) const;
+  void judge_body(Guests::iterator guest);
+  void serve(Guests::iterator guest);
   void let_in_long_bodies();
+  bool is_too_slow(const Guest& guest, Clock::time_point now) const;
+  void count(Guest& guest);
+  void listen_to(const Guest& guest) const;
   void dismiss_late();
   void dismiss_largest();
   void remove(Guests::iterator guest);
 
   const LobbyLimits limits_;
+  const Refuses refuses_;
   const Serve serve_;
   const int epoll_;
   const int wake_event_;
@@ -85,8 +101,8 @@ class Lobby {
   std::mutex mutex_;
   bool stopping_ = false;
   Guests guests_;
-  std::size_t bytes_ = 0;                                     ///< that the guests have sent
-  std::deque<std::shared_ptr<Connection>> with_long_bodies_;  ///< that wait for a place
+  std::size_t bytes_ = 0;   ///< that the guests have sent
+  std::size_t queued_ = 0;  ///< with long bodies
   std::thread thread_;
 };
 

@@ -17,6 +17,7 @@ class Places {
   Places& operator=(const Places&) = delete;
 
   std::size_t count() const { return count_; }
+  std::size_t taken() const { return taken_; }
 
   /// A place until the last copy of it is gone; null if all are taken. The places must outlive it.
   std::shared_ptr<void> take() {

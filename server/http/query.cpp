@@ -7,6 +7,22 @@
 namespace signorini::server {
 namespace {
 
+/// The percent signs of a target are known to be followed by two digits.
+std::string decoded(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%') {
+      unsigned octet = 0;
+      std::from_chars(text.data() + i + 1, text.data() + i + 3, octet, 16);
+      plain += static_cast<char>(octet);
+      i += 2;
+    } else {
+      plain += text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return plain;
+}
+
 template <class Number>
 std::optional<Number> whole_number(const std::string& text) {
   Number number{};
@@ -35,6 +51,18 @@ std::string names(std::initializer_list<std::string_view> allowed) {
 }
 
 }  // namespace
+
+Query read_query(std::string_view text) {
+  Query query;
+  while (!text.empty()) {
+    const std::string_view pair = text.substr(0, text.find('&'));
+    text.remove_prefix(std::min(pair.size() + 1, text.size()));
+    const std::size_t end = std::min(pair.find('='), pair.size());
+    if (pair.empty()) continue;
+    query.emplace(decoded(pair.substr(0, end)), decoded(pair.substr(std::min(end + 1, pair.size()))));
+  }
+  return query;
+}
 
 void allow_only(const Query& query, std::initializer_list<std::string_view> allowed) {
   for (const auto& [name, value] : query) {

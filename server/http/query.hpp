@@ -10,6 +10,9 @@
 
 namespace signorini::server {
 
+/// Reads `name=value&...` with percent-encoded names and values, in which a plus is a blank.
+Query read_query(std::string_view text);
+
 /// Refuses every query parameter that is not among the allowed ones or stands twice: 400.
 void allow_only(const Query& query, std::initializer_list<std::string_view> allowed);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
@@ -29,15 +30,16 @@ struct Request {
   std::string id;              ///< X-Request-Id, of the client or made here
   std::optional<Trace> trace;  ///< if the client sent a traceparent
   std::string method;
-  std::string path;    ///< decoded, without the query
+  std::string path;    ///< without the query; nothing in it is percent-encoded that need not be
   std::string target;  ///< as sent, for the log
+  std::string host;    ///< and port for which it is
   Query query;
   Headers headers;
   BodyReader read_body;
-  std::function<bool()> client_left;  ///< whether it has closed the connection, its sending side at least
+  std::chrono::steady_clock::time_point begun;
   bool accepts_gzip = false;
   std::string reply_type;  ///< the media type that the client prefers, of those of the route; by the router
-  std::string route;                                   ///< the pattern that the path matches; by the router
+  std::string route;       ///< the pattern that the path matches; by the router
   std::map<std::string, std::string> path_parameters;  ///< filled by the router
 
   /// All values of a header as one list, as RFC 9110 5.3 joins them; nothing if it is not there.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,19 +17,34 @@ using PieceSink = std::function<bool(std::string_view piece)>;
 /// anew.
 using BodyWriter = std::function<bool(const PieceSink& sink)>;
 
-/// One reply: a body that is there, one that is written while it is sent, or one that outlives the exchange.
+struct LaterReply;
+
+/// One reply: a body that is there, one that is written while it is sent, or one that outlives the exchange;
+/// or the promise of a reply.
 struct Response {
   int status = 200;
   std::string content_type;
   std::string body;
   BodyWriter write_body;
   std::function<void(int socket)> take_connection;  ///< sends the body itself, from the end of the head on
+  std::shared_ptr<const LaterReply> later;          ///< then the rest says nothing
   std::vector<std::pair<std::string, std::string>> headers;
   std::string job;  ///< id of the job that the reply is about, for the log
 
   static Response json(int status, std::string text);
   static Response html(std::string text);
   static Response empty(int status);
+};
+
+/// A reply that is made when something has happened, and for which no thread waits.
+struct LaterReply {
+  std::chrono::steady_clock::time_point until;  ///< by when it is made in any case
+  std::shared_ptr<void> place;                  ///< of those who may wait
+  /// Arranges that `ready` is called, by any thread, as soon as the reply can be made, while what is returned
+  /// lives.
+  std::function<std::shared_ptr<void>(std::function<void()> ready)> subscribe;
+  /// Makes the reply; the request is still there. A client that has left may have wanted something else.
+  std::function<Response(bool client_left)> make;
 };
 
 }  // namespace signorini::server

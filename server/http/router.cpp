@@ -1,11 +1,10 @@
 #include "server/http/router.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
-#include "server/log.hpp"
+#include "server/http/sender_fields.hpp"
 
 namespace signorini::server {
 namespace {
@@ -49,18 +48,6 @@ HttpError not_acceptable(const Route& route) {
            "This path answers with " + list + ", which the Accept header excludes."}};
 }
 
-/// What the lines of a handler say of who sends the request.
-class SenderFields {
- public:
-  explicit SenderFields(const Request& request) : address_("address", request.remote_address) {
-    if (!request.identity.name.empty()) name_.emplace("client", request.identity.name);
-  }
-
- private:
-  LogField address_;
-  std::optional<LogField> name_;
-};
-
 /// The media type of the reply. Throws HttpError 406.
 std::string negotiate(const Request& request, const Route& route) {
   if (route.media_types.empty()) return {};
@@ -75,6 +62,13 @@ HttpError method_not_allowed(const std::string& method, const std::string& allow
       {{"Allow", allow}}};
 }
 
+/// To OPTIONS for the service as a whole (RFC 9110, 9.3.7).
+Response options() {
+  Response response = Response::empty(204);
+  response.headers.emplace_back("Allow", "GET, HEAD, POST, DELETE, OPTIONS");
+  return response;
+}
+
 }  // namespace
 
 bool Router::is_for_probes(std::string_view path) const {
@@ -83,30 +77,51 @@ bool Router::is_for_probes(std::string_view path) const {
   });
 }
 
-Response Router::route(Request& request) const {
+Router::Found Router::find(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
-  const Route* found = nullptr;
-  std::string allow;
+  Found found;
   for (const Route& route : routes_) {
     std::optional<PathParameters> parameters = match(route.pattern, request.path);
     if (!parameters) continue;
     request.route = route.pattern;
-    allow += (allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
-    if (found != nullptr || route.method != method) continue;
-    found = &route;
+    found.allow += (found.allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
+    if (found.route != nullptr || route.method != method) continue;
+    found.route = &route;
     request.path_parameters = std::move(*parameters);
   }
-  const Audience audience = found == nullptr ? Audience::clients : found->audience;
-  if (audience != Audience::probes) access_.count(request);
-  if (!allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(allow);
+  return found;
+}
+
+const Route& Router::require(Request& request, const Found& found) const {
+  access_.require_known_host(request);
   // What does not look only, changes something or costs time.
-  const Scope scope = method == "GET" || method == "OPTIONS" ? Scope::read : Scope::solve;
-  if (audience == Audience::clients) request.identity = access_.require(request, scope);
-  if (allow.empty()) throw HttpError(404, details_of_status(404));
-  if (found == nullptr) throw method_not_allowed(request.method, allow);
-  request.reply_type = negotiate(request, *found);
+  const bool looks = request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
+  if (found.audience() == Audience::clients)
+    request.identity = access_.require(request, looks ? Scope::read : Scope::solve);
+  if (found.allow.empty()) throw not_found();
+  if (found.route == nullptr) throw method_not_allowed(request.method, found.allow);
+  request.reply_type = negotiate(request, *found.route);
+  return *found.route;
+}
+
+bool Router::refuses(Request& request) const {
+  try {
+    require(request, find(request));
+    return false;
+  } catch (const HttpError&) {
+    return true;
+  }
+}
+
+Response Router::route(Request& request) const {
+  if (request.path == "*") return options();
+  const Found found = find(request);
+  if (found.audience() != Audience::probes) access_.count(request);
+  if (!found.allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(found.allow);
+  const Route& route = require(request, found);
+  if (found.audience() == Audience::clients) access_.count(request.identity);
   const SenderFields sender(request);
-  return found->handler(request);
+  return route.handler(request);
 }
 
 }  // namespace signorini::server

@@ -37,9 +37,12 @@ class Router {
       std::vector<Route> routes, Access& access, ReplyObserver observer = [](auto&&...) {})
       : routes_(std::move(routes)), access_(access), observer_(std::move(observer)) {}
 
-  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 401, 403, 404, 405
-  /// (with Allow) and 406.
+  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 421, 403, 401, 404,
+  /// 405 (with Allow) and 406.
   Response route(Request& request) const;
+
+  /// Whether the request will be refused whatever its body says: 401, 404, 405, 406 and the like.
+  bool refuses(Request& request) const;
 
   /// Whether a path is for probes.
   bool is_for_probes(std::string_view path) const;
@@ -54,6 +57,16 @@ class Router {
   }
 
  private:
+  /// The routes that have a path.
+  struct Found {
+    const Route* route = nullptr;  ///< for the method of the request, if there is one
+    std::string allow;             ///< the methods of all of them
+    Audience audience() const { return route == nullptr ? Audience::clients : route->audience; }
+  };
+
+  Found find(Request& request) const;
+  const Route& require(Request& request, const Found& found) const;
+
   std::vector<Route> routes_;
   Access& access_;
   ReplyObserver observer_;

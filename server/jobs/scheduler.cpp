@@ -28,7 +28,6 @@ constexpr std::size_t small_result = std::size_t{4} << 20;
 bool is_small(const Ending& ending) {
   return memory_of({nullptr, ending.solution, ending.history}) <= small_result;
 }
-constexpr auto time_to_give_up = 100ms;  // how soon it is noticed that nobody waits any more
 
 Ending result_not_kept() {
   Ending ending;
@@ -98,26 +97,6 @@ std::string Scheduler::submit(NewJob job) {
   }
   queued_.notify_all();
   return id;
-}
-
-std::optional<Job> Scheduler::wait(const std::string& id, std::chrono::duration<double> time,
-                                   const std::function<bool()>& given_up) {
-  using Clock = std::chrono::steady_clock;
-  const auto until = Clock::now() + std::chrono::duration_cast<Clock::duration>(time);
-  const std::shared_ptr<const Watch> watched = watch(id);
-  const std::optional<Job> job = store_.find(id);
-  if (!job || has_ended(job->status)) return job;
-  const auto over = [&] { return watched->over() || stopped_; };
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    const auto next = given_up ? std::min(until, Clock::now() + time_to_give_up) : until;
-    if (ended_.wait_until(lock, next, over) || Clock::now() >= until) break;
-    lock.unlock();
-    if (given_up && given_up()) break;
-    lock.lock();
-  }
-  if (lock) lock.unlock();
-  return store_.find(id);
 }
 
 std::shared_ptr<const Watch> Scheduler::watch(const std::string& id) {
@@ -221,11 +200,6 @@ void Scheduler::stop() {
   const std::lock_guard joining(joining_);
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
-  {
-    const std::lock_guard lock(mutex_);
-    stopped_ = true;
-  }
-  ended_.notify_all();
 }
 
 void Scheduler::work() {
@@ -357,7 +331,6 @@ void Scheduler::announce_end(const std::string& id) {
     if (const auto watch = watch_of(id)) watch->end();
     watches_.erase(id);
   }
-  ended_.notify_all();
 }
 
 /// Null if nobody watches the job. The mutex must be held.

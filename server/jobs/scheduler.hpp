@@ -48,11 +48,6 @@ class Scheduler {
   /// once drain() was called.
   std::string submit(NewJob job);
 
-  /// The job when it has ended, or as it is when the time is over or `given_up`, which is asked now and then,
-  /// says so; nothing if it is gone.
-  std::optional<Job> wait(const std::string& id, std::chrono::duration<double> time,
-                          const std::function<bool()>& given_up = {});
-
   /// What happens to a job from now on. One that has ended is never `over`: ask the store after this call.
   std::shared_ptr<const Watch> watch(const std::string& id);
 
@@ -116,10 +111,9 @@ class Scheduler {
   mutable std::mutex mutex_;
   std::condition_variable queued_;  ///< a job was queued, or drain, or stop
   std::condition_variable place_;   ///< there is one, or drain
-  std::condition_variable ended_;   ///< a job ended, or a thread has
+  std::condition_variable ended_;   ///< a thread has ended
   bool draining_ = false;
   bool stopping_ = false;
-  bool stopped_ = false;
   int working_;  ///< threads that have a job or would take one
   int places_;   ///< solves that may begin
   std::uint64_t submissions_ = 0;

@@ -191,6 +191,49 @@ TEST_F(Origins, MayAskBefore) {
   EXPECT_EQ(preflight("https://bad.example")->status, 401);
 }
 
+class OnLoopback : public ServiceTest {
+ protected:
+  OnLoopback() : ServiceTest(options()) {}
+
+  static ServiceOptions options() {
+    ServiceOptions options;
+    options.hosts = KnownHosts({"Proxied.example"});
+    options.cors_origins = {"https://good.example"};
+    return options;
+  }
+
+  int status_with(const httplib::Headers& headers, const std::string& path = "/v1/solves") {
+    return client_.Get(path, headers)->status;
+  }
+};
+
+TEST_F(OnLoopback, OtherNamesAreRefused) {
+  for (const char* host : {"localhost", "LocalHost:8080", "127.0.0.1", "127.1.2.3:80", "[::1]:8080",
+                           "proxied.example", "PROXIED.example:443"}) {
+    EXPECT_EQ(status_with({{"Host", host}}), 200) << host;
+  }
+  for (const char* host :
+       {"rebound.example", "rebound.example:8080", "128.0.0.1", "localhost.rebound.example",
+        "127.0.0.1.rebound.example", "[::2]", "10.0.0.1", "0.0.0.0"}) {
+    expect_problem(client_.Get("/v1/solves", {{"Host", host}}), 421);
+    EXPECT_EQ(status_with({{"Host", host}}, "/"), 421) << host;
+  }
+  const std::string absolute = send_raw(
+      service_.port(),
+      "GET http://rebound.example/v1/solves HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  EXPECT_TRUE(absolute.starts_with("HTTP/1.1 421 ")) << absolute;
+}
+
+TEST_F(OnLoopback, PagesOfOtherOriginsAreRefused) {
+  const httplib::Headers own{{"Host", "localhost:8080"}, {"Origin", "http://localhost:8080"}};
+  EXPECT_EQ(status_with(own), 200);
+  EXPECT_EQ(status_with({{"Host", "localhost"}, {"Origin", "https://good.example"}}), 200);
+  for (const char* origin :
+       {"https://bad.example", "null", "http://localhost:3000", "http://localhost.bad.example:8080"}) {
+    expect_problem(client_.Get("/v1/solves", {{"Host", "localhost:8080"}, {"Origin", origin}}), 403);
+  }
+}
+
 class NoOrigins : public ServiceTest {};
 
 TEST_F(NoOrigins, AreLetInByDefault) {

@@ -51,6 +51,8 @@ TEST(Config, SaysWhoMayAskAndHowOften) {
       read({"--rate", "2.5", "--token-file", "tokens", "--insecure", "--max-memory", "2gb", "--cors-origin",
             "https://a.example", "--cors-origin", "https://b.example"})
           .config.daemon;
+  EXPECT_EQ(read({"--allow-host", "a.example,b.example"}).config.daemon.allowed_hosts,
+            (std::vector<std::string>{"a.example", "b.example"}));
   EXPECT_EQ(limited.rate, 2.5);
   EXPECT_EQ(limited.token_file, "tokens");
   EXPECT_TRUE(limited.insecure);

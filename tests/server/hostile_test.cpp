@@ -38,7 +38,8 @@ std::string example(const std::string& wanted) {
 }
 
 std::string post_head(const std::string& headers) {
-  return "POST /v1/solves HTTP/1.1\r\nHost: h\r\nContent-Type: application/json\r\n" + headers + "\r\n\r\n";
+  return "POST /v1/solves HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n" + headers +
+         "\r\n\r\n";
 }
 
 /// Asks for the health of the service again and again, as a probe does, and keeps the longest time.
@@ -157,7 +158,9 @@ TEST_F(Hostile, ABodyThatInflates) {
   withstand([&] {
     for (int i = 0; i < 5; ++i) {
       const std::string reply =
-          say(post_head("Content-Encoding: gzip\r\nContent-Length: " + std::to_string(bomb.size())) + bomb);
+          say(post_head("Connection: close\r\nContent-Encoding: gzip\r\nContent-Length: " +
+                        std::to_string(bomb.size())) +
+              bomb);
       EXPECT_TRUE(reply.starts_with("HTTP/1.1 413 ")) << reply;
     }
   });
@@ -267,7 +270,7 @@ TEST_F(Hostile, ManyWhoAskAndDoNotListen) {
   withstand([&] {
     for (int i = 0; i < 200; ++i) {
       deaf.emplace_back(port());
-      deaf.back().send("GET " + path + "?fields=mesh HTTP/1.1\r\nHost: h\r\n\r\n");
+      deaf.back().send("GET " + path + "?fields=mesh HTTP/1.1\r\nHost: localhost\r\n\r\n");
     }
     std::this_thread::sleep_for(drip_time());
     EXPECT_EQ(client.Get("/v1/solves")->status, 200);
@@ -280,7 +283,7 @@ TEST_F(Hostile, ACrowdAtTheDoor) {
   std::vector<RawClient> clients;
   for (int i = 0; i < 300; ++i) {
     clients.emplace_back(port());
-    clients.back().send("GET /healthz HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n");
+    clients.back().send("GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   }
   daemon_.process().signal(SIGCONT);
   EXPECT_TRUE(listen_until(clients, 60s, [&] {

@@ -27,7 +27,7 @@ RunningService::RunningService(const ServiceOptions& options)
                  [this](const Job& job, const Ending& ending) { metrics_.ended(job, ending); }),
       events_(options.max_subscribers),
       access_{options.token_file.empty() ? BearerTokens() : BearerTokens(options.token_file),
-              RequestRate(options.rate), Cors(options.cors_origins)},
+              RequestRate(options.rate), Cors(options.cors_origins), options.hosts},
       service_{*store_, scheduler_, events_, access_, options.limits, operators_, metrics_},
       router_(routes(service_)),
       listener_({"127.0.0.1", 0, options.threads, options.limits.max_body_bytes}, router_) {

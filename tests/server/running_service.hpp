@@ -24,6 +24,7 @@ struct ServiceOptions {
   double rate = 0;
   std::string token_file = {};
   std::vector<std::string> cors_origins = {};
+  KnownHosts hosts = {};
   Limits limits{1 << 20, 1000};
   std::filesystem::path data_dir = {};  ///< empty: jobs are kept in memory
   std::string vfs = {};                 ///< the file layer of SQLite, empty for the usual one

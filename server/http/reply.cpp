@@ -1,0 +1,116 @@
+#include "server/http/reply.hpp"
+
+#include <array>
+#include <charconv>
+#include <ctime>
+
+#include <spdlog/spdlog.h>
+#include <boost/beast/http/status.hpp>
+
+#include "server/log.hpp"
+
+namespace signorini::server {
+namespace {
+
+/// How the end of a body is known (RFC 9112, 6.3).
+enum class Delimiter { none, length, chunks, close };
+
+/// RFC 9110, 5.6.7.
+std::string date() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  const std::size_t size = std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc);
+  return {text.data(), size};
+}
+
+std::string phrase_of(int status) {
+  const auto phrase = boost::beast::http::obsolete_reason(static_cast<boost::beast::http::status>(status));
+  return {phrase.data(), phrase.size()};
+}
+
+std::string head(const Response& response, Delimiter delimiter, std::uint64_t length, bool last) {
+  std::string text =
+      "HTTP/1.1 " + std::to_string(response.status) + ' ' + phrase_of(response.status) + "\r\n";
+  const auto add = [&](std::string_view name, std::string_view value) {
+    text.append(name).append(": ").append(value).append("\r\n");
+  };
+  add("Date", date());
+  add("Cache-Control", "no-store");
+  add("Vary", "Accept, Accept-Encoding");
+  add("X-Content-Type-Options", "nosniff");
+  for (const auto& [name, value] : response.headers) add(name, value);
+  if (!response.content_type.empty()) add("Content-Type", response.content_type);
+  if (delimiter == Delimiter::length) add("Content-Length", std::to_string(length));
+  if (delimiter == Delimiter::chunks) add("Transfer-Encoding", "chunked");
+  if (last) add("Connection", "close");
+  return text + "\r\n";
+}
+
+Delimiter delimiter_of(const Message& message, const Response& response) {
+  if (response.take_connection) return Delimiter::close;
+  if (response.write_body) return message.version == 10 ? Delimiter::close : Delimiter::chunks;
+  return response.status == 204 ? Delimiter::none : Delimiter::length;
+}
+
+/// The size line of a chunk (RFC 9112, 7.1).
+std::string chunk_line(std::size_t size) {
+  std::array<char, 16> digits;
+  const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), size, 16);
+  return std::string(digits.data(), end) + "\r\n";
+}
+
+/// Sends a body as it is written, the head together with its first piece.
+bool send_pieces(Connection& connection, std::string head, Delimiter delimiter,
+                 const BodyWriter& write_body) {
+  std::string unsent = std::move(head);
+  const bool chunked = delimiter == Delimiter::chunks;
+  const bool complete = write_body([&](std::string_view piece) {
+    if (piece.empty()) return true;
+    if (chunked) unsent += chunk_line(piece.size());
+    unsent += piece;
+    if (chunked) unsent += "\r\n";
+    const bool taken = connection.send(unsent);
+    unsent.clear();
+    return taken;
+  });
+  if (complete && chunked) unsent += "0\r\n\r\n";
+  if (complete && connection.send(unsent)) return true;
+  spdlog::info("the client left before the reply ended");
+  return false;
+}
+
+bool send_body(Connection& connection, std::string head, Delimiter delimiter, const Response& response,
+               const std::string& log_id) {
+  if (!response.write_body) {
+    return connection.send(head, !response.body.empty()) && connection.send(response.body);
+  }
+  const LogField request("request", log_id);
+  try {
+    return send_pieces(connection, std::move(head), delimiter, response.write_body);
+  } catch (const std::exception& error) {
+    spdlog::error("the reply broke off: {}", error.what());
+    return false;
+  }
+}
+
+}  // namespace
+
+std::string reply_head(const Response& response, std::uint64_t length) {
+  return head(response, Delimiter::length, length, true);
+}
+
+bool send_reply(Connection& connection, const Message& message, const Response& response,
+                const std::string& log_id) {
+  const Delimiter delimiter = delimiter_of(message, response);
+  const bool last = !message.may_follow || delimiter == Delimiter::close;
+  const std::string start = head(response, delimiter, response.body.size(), last);
+  connection.begin_reply();
+  const bool has_body = message.method != "HEAD" && !response.take_connection;
+  const bool sent =
+      has_body ? send_body(connection, start, delimiter, response, log_id) : connection.send(start);
+  return sent && !last;
+}
+
+}  // namespace signorini::server
