@@ -156,7 +156,7 @@ void use(int port, Ledger& ledger, unsigned seed, const std::atomic<bool>& kille
   client.set_tcp_nodelay(true);
   std::mt19937 random(seed);
   while (!killed) {
-    const unsigned action = random() % 8;
+    const auto action = static_cast<unsigned>(random() % 9);
     const std::string id = ledger.any(random);
     if (action < 3 || id.empty()) {
       submit(client, ledger, action == 0);
@@ -215,7 +215,7 @@ TEST(Crash, LosesNothingThatWasPromised) {
                            std::cref(killed));
     }
     // A life is counted in replies, so that a slow machine or a sanitizer tests as much as a fast one.
-    const int last = ledger.replies() + static_cast<int>(random() % 40);
+    const int last = ledger.replies() + static_cast<int>(20 + random() % 40);
     while (ledger.replies() < last) std::this_thread::sleep_for(1ms);
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
     daemon.process().signal(SIGKILL);

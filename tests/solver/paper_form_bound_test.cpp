@@ -46,6 +46,19 @@ TEST(PaperFormBound, HoldsForAnIterationThatDiverges) {
   expect_bounded(SignoriniEdge::problem(Scheme::conforming, 4), {0.5, 0, 1, 1e-5, 10});
 }
 
+/// A stripe so thin that the cells through which the law jumps are not cut to nothing.
+TEST(PaperFormBound, IsThereForAThinSoftStripe) {
+  Problem problem = problems::paper(Scheme::nonconforming, 3);
+  problem.material = MembraneStiffness::isotropic(
+      problems::formula("abs(0.4535961214255773*x + 0.8912073600614354*y - 0.5415828513914194) < 0.003 ? 0.01 : 1"));
+  problem.boundary = {{"left", Fixed{}}, {"right", Contact{1e6}}};
+  const ErrorBound exact = solve(problem, {ActiveSet{}, {}}).summary.error_bound.value(),
+                   early = solve(problem, {PaperUzawa{0.5, 10, 0, 1e-5, 3}, {}}).summary.error_bound.value();
+  EXPECT_TRUE(early.guaranteed);
+  EXPECT_DOUBLE_EQ(early.energy_upper, exact.energy_upper);
+  EXPECT_GT(early.value, exact.value);
+}
+
 /// κ = 1 + ½ sin(9 x): (C τ, τ) of a constant stress on the unit square, by the integral of 1 / κ.
 TEST(EnergyNorm, OfAStressCountsTheLawWithinATriangle) {
   Problem problem = problems::paper(Scheme::nonconforming, 3);
