@@ -264,6 +264,10 @@ void add_bound(const Problem& problem, Certificate certificate, Solution& soluti
     solution.summary.error_bound = std::move(certificate.bound);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);
+  } else {
+    std::string note = "there is no error bound: its numbers leave the range of double precision";
+    for (const std::string& reason : certificate.bound.unmet) note += "; " + reason;
+    solution.summary.notes.push_back(std::move(note));
   }
   solution.summary.timings = timings(progress);
   solution.summary.peak_memory_bytes = peak_memory_bytes();

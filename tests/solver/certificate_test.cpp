@@ -17,6 +17,7 @@
 #include "mesh/refine.hpp"
 #include "norms.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -202,6 +203,7 @@ std::map<Scheme, std::vector<double>> effectivities(const std::vector<unsigned>&
 
 /// On meshes so coarse some tractions are hardly resolved.
 TEST(Certificate, OfFiftyRandomProblemsIsCloseToTheirErrors) {
+  if (sanitized) GTEST_SKIP() << "the five on finer meshes take the same ways";
   std::vector<unsigned> seeds(50);
   std::iota(seeds.begin(), seeds.end(), 0);
   for (const auto& [scheme, all] : effectivities(seeds, 1)) {

@@ -3,6 +3,7 @@
 
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 #include "solve.hpp"
 
 namespace signorini {
@@ -59,7 +60,7 @@ TEST(Converged, MeansThatTheResidualsAreMetWhereContactIsTinyBesideTheLoad) {
 }
 
 TEST(Converged, MeansThatTheResidualsAreMetOnRandomProblems) {
-  for (unsigned seed = 1; seed < 21; ++seed)
+  for (unsigned seed = 1; seed < (sanitized ? 4 : 21); ++seed)
     expect_met(problems::random(seed), "seed " + std::to_string(seed));
 }
 
