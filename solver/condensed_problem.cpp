@@ -11,7 +11,6 @@
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
-
 namespace {
 
 /// How far a foundation may be, in displacements, before it is drawn near; and how far it is then.
@@ -64,31 +63,34 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
   progress.enter(Phase::assemble);
   discretization_ = std::make_unique<Discretization>(problem, operator_->mesh(), &progress);
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
-  condensed_ =
-      std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
+  condense(progress);
 }
 
-/// Poses the problem again with another reach of its gaps.
-void CondensedProblem::pose(double reach, Progress& progress) {
-  discretization_->draw_near(reach);
+/// For the right side of the discretization.
+void CondensedProblem::condense(Progress& progress) {
   condensed_ =
       std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
 }
 
 Fields CondensedProblem::find(const Method& method, Progress& progress, const Eigen::VectorXd& start) {
+  const auto pose = [&](double reach) {
+    discretization_->draw_near(reach);
+    condense(progress);
+  };
   Fields fields = find_as_posed(method, progress, start);
   // Beside the largest gaps the first displacement may be but noise; each pose has ten digits less of it.
   for (int most = 4; most > 0; --most) {
     const double reach = reach_for(discretization_->clearance, fields);
     if (!std::isfinite(reach)) return fields;
-    pose(reach, progress);
+    pose(reach);
     progress.take_history();
     fields = find_as_posed(method, progress, fields.clearance.cwiseMin(reach));
-    if (touches_beyond(discretization_->clearance, fields.clearance)) break;
+    if (touches_beyond(discretization_->clearance, fields.clearance)) {
+      pose(std::numeric_limits<double>::infinity());
+      return find_as_posed(method, progress, {});
+    }
   }
-  if (!touches_beyond(discretization_->clearance, fields.clearance)) return fields;
-  pose(std::numeric_limits<double>::infinity(), progress);
-  return find_as_posed(method, progress, {});
+  return fields;
 }
 
 Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start) {

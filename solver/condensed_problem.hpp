@@ -41,7 +41,7 @@ class CondensedProblem {
 
  private:
   Fields find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start);
-  void pose(double reach, Progress& progress);
+  void condense(Progress& progress);
 
   std::shared_ptr<const Operator> operator_;
   bool reused_;

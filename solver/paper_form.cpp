@@ -10,7 +10,8 @@
 namespace signorini {
 namespace {
 
-Solution iterate(const Discretization& problem, const Settings& settings, Progress& progress) {
+Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& settings, Progress& progress) {
+  const Discretization problem(posed, mesh, &progress);
   held_by_contact_alone(problem);
   progress.enter(Phase::assemble);
   UzawaIteration iteration(problem, std::get<PaperUzawa>(settings.method), progress);
@@ -37,13 +38,12 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
 }  // namespace
 
 Solution iterate_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
-  const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  return iterate(Discretization(problem, *mesh, &progress), settings, progress);
+  return iterate(problem, *requested_mesh(problem, progress), settings, progress);
 }
 
 Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  Solution solution = iterate(Discretization(problem, *mesh, &progress), settings, progress);
+  Solution solution = iterate(problem, *mesh, settings, progress);
   progress.enter(Phase::certify);
   add_bound(problem, certify_iterate(problem, mesh, solution, progress), solution, progress);
   return solution;

@@ -8,15 +8,12 @@
 
 #include <cblas.h>
 
-#include "system/lapack.hpp"
+#include "system/elimination_in_blocks.hpp"
 #include "system/pace.hpp"
-#include "system/symmetric_update.hpp"
 
 namespace signorini {
 namespace {
 
-/// Columns that are eliminated at a time, between two looks at the observer.
-constexpr int kBlock = 256;
 /// Fronts up to this size are factored without BLAS.
 constexpr int kSmall = 24;
 
@@ -173,17 +170,10 @@ class Cholesky::Factorisation {
   void factor(const Target& front) {
     const int m = front.size, p = front.pivots, rest = m - p;
     if (m <= kSmall) return factor_small(front);
-    for (int begin = 0; begin < p; begin += kBlock) {
-      progress_.check();
-      const int width = std::min(kBlock, p - begin), end = begin + width;
-      double* diagonal = front[begin] + begin;
-      if (!factorize_lower(width, diagonal, m)) throw NotPositiveDefinite();
-      double* below = front[begin] + end;
-      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, m - end, width, 1,
-                  diagonal, m, below, m);
-      subtract_square(m - end, p - end, width, below, m, front[end] + end, m, progress_);
+    const auto update_rest = [&](int begin, int width) {
       subtract_square(rest, rest, width, front[begin] + p, m, front.rest, rest, progress_);
-    }
+    };
+    if (!eliminate_in_blocks(m, p, front.columns, m, progress_, update_rest)) throw NotPositiveDefinite();
   }
 
   /// The same column by column: a call of BLAS takes longer than a small front.

@@ -1,6 +1,5 @@
 #include "system/dense_cholesky.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -8,15 +7,11 @@
 #include <cblas.h>
 
 #include "system/cholesky.hpp"
-#include "system/lapack.hpp"
+#include "system/elimination_in_blocks.hpp"
 #include "system/pace.hpp"
-#include "system/symmetric_update.hpp"
 
 namespace signorini {
 namespace {
-
-/// Columns that are eliminated at a time.
-constexpr int kBlock = 256;
 
 Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen, Progress& progress) {
   const auto n = static_cast<Eigen::Index>(chosen.size());
@@ -39,16 +34,7 @@ Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>
 DenseCholesky::DenseCholesky(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen, Progress& progress)
     : factor_(lower_part(matrix, chosen, progress)) {
   const int n = static_cast<int>(chosen.size());
-  for (int begin = 0; begin < n && positive_; begin += kBlock) {
-    progress.check();
-    const int width = std::min(kBlock, n - begin), end = begin + width, below = n - end;
-    double* diagonal = &factor_(begin, begin);
-    positive_ = factorize_lower(width, diagonal, n);
-    if (!positive_ || below == 0) continue;
-    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, width, 1, diagonal, n,
-                diagonal + width, n);
-    subtract_square(below, below, width, diagonal + width, n, &factor_(end, end), n, progress);
-  }
+  positive_ = eliminate_in_blocks(n, n, factor_.data(), n, progress, [](int, int) {});
 }
 
 double DenseCholesky::smallest_pivot() const {

@@ -140,9 +140,7 @@ TEST(Certificate, OfThePapersProblemIsCloseToItsError) {
       const Solution fine = solve_exactly(problem);
       const ErrorBound bound = coarse.summary.error_bound.value();
       constexpr double energy = -0.914792950798;
-      const double error = distance(problem, coarse, fine, 2),
-                   left = std::sqrt(error * error + 2 * (bound.energy_upper - energy) +
-                                    contact_term(coarse, fine));
+      const double left = left_side(distance(problem, coarse, fine, 2), coarse, fine, energy);
       // The finer solution has an error, too.
       EXPECT_GE(1.001 * bound.value, left) << n;
       EXPECT_LE(bound.value, (scheme == Scheme::conforming ? 1.09 : 1.02) * left) << n;
@@ -157,14 +155,12 @@ TEST(Certificate, OfALoadThatJumpsThroughTheBodyIsCloseToItsError) {
       problem.body = problems::formula(load);
       problem.mesh.refine = 2;
       const Solution fine = solve_exactly(problem);
-      const ErrorBound fine_bound = fine.summary.error_bound.value();
-      const double energy = (fine_bound.energy_lower + fine_bound.energy_upper) / 2;
+      const double energy = energy_by(fine.summary.error_bound.value());
       problem.scheme = scheme;
       problem.mesh.refine = 0;
       const Solution coarse = solve_exactly(problem);
       const ErrorBound bound = coarse.summary.error_bound.value();
-      const double error = distance(problem, coarse, fine, 2),
-                   left = std::sqrt(error * error + 2 * (bound.energy_upper - energy) + contact_term(coarse, fine));
+      const double left = left_side(distance(problem, coarse, fine, 2), coarse, fine, energy);
       EXPECT_GE(bound.value, left) << load;
       EXPECT_LE(bound.value, 1.5 * left) << load;
     }
@@ -181,7 +177,7 @@ std::map<Scheme, std::vector<double>> effectivities(const std::vector<unsigned>&
     problem.mesh.refine = 2;
     const Solution fine = solve_exactly(problem);
     const ErrorBound fine_bound = fine.summary.error_bound.value();
-    const double energy = (fine_bound.energy_lower + fine_bound.energy_upper) / 2;
+    const double energy = energy_by(fine_bound);
     problem.mesh.refine = 0;
     for (const Scheme scheme : schemes) {
       problem.scheme = scheme;
@@ -191,10 +187,8 @@ std::map<Scheme, std::vector<double>> effectivities(const std::vector<unsigned>&
       EXPECT_LT(fine_bound.value, 0.6 * bound.value) << seed;
       EXPECT_LE(bound.energy_lower, energy) << seed;
       EXPECT_GE(bound.energy_upper, energy) << seed;
-      const double error = distance(problem, coarse, fine, 2);
-      const double left_square =
-          error * error + 2 * (bound.energy_upper - energy) + contact_term(coarse, fine);
-      effectivities[scheme].push_back(bound.value / std::sqrt(left_square));
+      const double left = left_side(distance(problem, coarse, fine, 2), coarse, fine, energy);
+      effectivities[scheme].push_back(bound.value / left);
     }
   }
   for (auto& [scheme, all] : effectivities) std::ranges::sort(all);
