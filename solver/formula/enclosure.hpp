@@ -19,20 +19,7 @@ class Enclosure {
   Value x, y, nx, ny;
   std::optional<Value> undecided = std::nullopt;
 
-  Value operator()(const Formula::Instruction& step) const {
-    switch (step.operation) {
-      case Operation::x:
-        return x;
-      case Operation::y:
-        return y;
-      case Operation::nx:
-        return nx;
-      case Operation::ny:
-        return ny;
-      default:
-        return constant(step.constant);
-    }
-  }
+  Value constant(double value) const { return constant_like(x, value); }
 
   Value operator()(Operation operation, const Value& a) {
     switch (operation) {
@@ -89,8 +76,6 @@ class Enclosure {
 
  private:
   enum class Sign { negative, zero, positive, unknown };
-
-  Value constant(double value) const { return constant_like(x, value); }
 
   static bool is_true(const Value& a) { return range(a).lower() > 0 || range(a).upper() < 0; }
   static bool is_false(const Value& a) { return range(a).lower() == 0 && range(a).upper() == 0; }

@@ -12,20 +12,7 @@ namespace {
 struct Evaluation {
   double x, y, nx, ny;
 
-  double operator()(const Formula::Instruction& step) const {
-    switch (step.operation) {
-      case Operation::x:
-        return x;
-      case Operation::y:
-        return y;
-      case Operation::nx:
-        return nx;
-      case Operation::ny:
-        return ny;
-      default:
-        return step.constant;
-    }
-  }
+  double constant(double value) const { return value; }
 
   double operator()(Operation operation, double a) const {
     switch (operation) {

@@ -35,18 +35,18 @@ class Formula {
   /// Operands must stand before their operations, and one value be left.
   explicit Formula(std::vector<Instruction> program);
 
-  /// Calls `arithmetic(operation, a, b, c)` with as many operands as the operation takes, and
-  /// `arithmetic(instruction)` for constants and variables; answers the last value.
+  /// Calls `arithmetic(operation, a, b, c)` with as many operands as the operation takes, and takes the variables from
+  /// its members x, y, nx and ny, the numbers from its `constant(number)`; answers the last value.
   template <typename Arithmetic>
   auto evaluate(Arithmetic& arithmetic) const {
-    using Value = decltype(arithmetic(Instruction{}));
+    using Value = decltype(arithmetic.constant(0.));
     std::vector<Value> stack;
     stack.reserve(depth_);
     const auto top = [&](int below) -> Value& { return stack[stack.size() - 1 - below]; };
     for (const Instruction& step : program_) {
       switch (operands(step.operation)) {
         case 0:
-          stack.push_back(arithmetic(step));
+          stack.push_back(leaf(arithmetic, step));
           break;
         case 1:
           top(0) = arithmetic(step.operation, top(0));
@@ -69,6 +69,22 @@ class Formula {
   bool has_variables() const;
 
  private:
+  template <typename Arithmetic>
+  static auto leaf(const Arithmetic& arithmetic, const Instruction& step) {
+    switch (step.operation) {
+      case Operation::x:
+        return arithmetic.x;
+      case Operation::y:
+        return arithmetic.y;
+      case Operation::nx:
+        return arithmetic.nx;
+      case Operation::ny:
+        return arithmetic.ny;
+      default:
+        return arithmetic.constant(step.constant);
+    }
+  }
+
   std::vector<Instruction> program_;
   std::size_t depth_ = 0;
 };
