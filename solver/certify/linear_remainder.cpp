@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -19,41 +20,61 @@ double length(const std::array<Point, 3>& corners, int e) {
   return (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
 }
 
-/// The least of constant(reference, first, det B) times the norms of B over the maps of the reference
-/// triangles, corner 0 to the corner named first.
-template <int D, typename Constant>
-double least_of_maps(const std::array<Point, 3>& corners, const Constant& constant) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const ReferenceTriangle& reference : reference_triangles()) {
-    const Eigen::Matrix2d back = jacobian(reference.corners, 0).inverse();
+/// ‖B‖, and ‖B‖² ‖B⁻¹‖ for an elastic body: what a constant of loads grows by.
+template <int D>
+double growth(const ReferenceMap& map) {
+  return D == 1 ? map.stretch : std::pow(map.stretch, 3) / map.jacobian.determinant();
+}
+
+/// The map with the least constant(reference triangle, map), and that constant.
+template <typename Constant>
+std::pair<ReferenceMap, double> least_of_maps(const std::array<Point, 3>& corners, const Constant& constant) {
+  std::pair<ReferenceMap, double> best{{}, std::numeric_limits<double>::infinity()};
+  for (int reference = 0; reference < 2; ++reference) {
+    const ReferenceTriangle& triangle = reference_triangles()[reference];
+    const Eigen::Matrix2d back = jacobian(triangle.corners, 0).inverse();
     for (int first = 0; first < 3; ++first) {
-      const Eigen::Matrix2d b = jacobian(corners, first) * back;
+      ReferenceMap map{reference, first, jacobian(corners, first) * back};
       // The singular values s ≥ t have s² + t² = |B|² and s t = det B.
-      const double square = b.squaredNorm(), det = b.determinant();
-      const double s = (std::sqrt(square + 2 * det) + std::sqrt(std::max(0., square - 2 * det))) / 2;
-      least = std::min(least, constant(reference, first, det) * (D == 1 ? s : s * s * s / det));
+      const double square = map.jacobian.squaredNorm(), det = map.jacobian.determinant();
+      map.stretch = (std::sqrt(square + 2 * det) + std::sqrt(std::max(0., square - 2 * det))) / 2;
+      if (const double own = constant(triangle, map); own < best.second) best = {map, own};
     }
   }
-  return least;
+  return best;
+}
+
+template <int D>
+std::pair<ReferenceMap, double> least_of_loads(const std::array<Point, 3>& corners) {
+  return least_of_maps(corners, [](const ReferenceTriangle& reference, const ReferenceMap& map) {
+    return reference.constants(D).load * growth<D>(map);
+  });
 }
 
 }  // namespace
 
 template <int D>
+ReferenceMap nearest_reference(const std::array<Point, 3>& corners) {
+  return least_of_loads<D>(corners).first;
+}
+
+template <int D>
 double linear_remainder(const std::array<Point, 3>& corners) {
-  return least_of_maps<D>(
-      corners, [](const ReferenceTriangle& reference, int, double) { return reference.constants(D).load; });
+  return least_of_loads<D>(corners).second;
 }
 
 template <int D>
 double linear_remainder_on_edge(const std::array<Point, 3>& corners, int e) {
-  return least_of_maps<D>(corners, [&](const ReferenceTriangle& reference, int first, double determinant) {
-    const int own = (e + 3 - first) % 3;
-    return reference.constants(D).on_edges[own] *
-           std::sqrt(length(corners, e) / length(reference.corners, own) / determinant);
-  });
+  const auto constant = [&](const ReferenceTriangle& reference, const ReferenceMap& map) {
+    const int own = (e + 3 - map.first) % 3;
+    return reference.constants(D).on_edges[own] * growth<D>(map) *
+           std::sqrt(length(corners, e) / length(reference.corners, own) / map.jacobian.determinant());
+  };
+  return least_of_maps(corners, constant).second;
 }
 
+template ReferenceMap nearest_reference<1>(const std::array<Point, 3>&);
+template ReferenceMap nearest_reference<2>(const std::array<Point, 3>&);
 template double linear_remainder<1>(const std::array<Point, 3>&);
 template double linear_remainder<2>(const std::array<Point, 3>&);
 template double linear_remainder_on_edge<1>(const std::array<Point, 3>&, int);

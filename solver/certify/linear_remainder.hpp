@@ -6,6 +6,19 @@
 
 namespace signorini {
 
+/// A triangle as the image of a reference triangle: x = x₀ + B x̂ takes corner z of that one to corner
+/// first + z.
+struct ReferenceMap {
+  int reference = 0;  ///< of reference_triangles()
+  int first = 0;
+  Eigen::Matrix2d jacobian;  ///< B
+  double stretch = 0;        ///< ‖B‖
+};
+
+/// The one of the six maps with the least constant of linear_remainder().
+template <int D>
+ReferenceMap nearest_reference(const std::array<Point, 3>& corners);
+
 /// A bound from above of the least constant in min ‖w − p‖ ≤ constant · ‖ε(w)‖ on a triangle, for all
 /// displacements w of D components (∇w for ε(w) if there is one) and over the linear p. It bounds (f, w) for
 /// the loads f of norm 1 that are orthogonal to all linear functions, and is the largest norm of the least

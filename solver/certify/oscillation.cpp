@@ -1,7 +1,9 @@
 #include "certify/oscillation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "certify/jump_oscillation.hpp"
 #include "certify/linear_remainder.hpp"
 
 namespace signorini {
@@ -9,8 +11,9 @@ namespace signorini {
 template <int D>
 double oscillation(const Discretization& problem, int t, const LawOnMesh& laws) {
   const auto corners = problem.mesh.corners(t);
-  const double of_load = problem.body[t].unbalanced;
-  double sum = of_load > 0 ? linear_remainder<D>(corners) * of_load : 0;
+  const ProjectedLoad& load = problem.body[t];
+  double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
+  if (load.jumps && sum > 0) sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners));
   for (int e = 0; e < 3; ++e) {
     const int edge = problem.mesh.triangle_edges[t][e];
     if (!problem.traction.acts_on(edge)) continue;

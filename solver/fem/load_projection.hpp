@@ -8,13 +8,10 @@
 
 namespace signorini {
 
-/// The body load f on one triangle as scheme and certificate see it: by its projection Π₂f onto P2, which does the work
-/// of f on what is quadratic, and by the Πf that stresses balance. That is Π₂f, or the projection onto P1 where f jumps: to
-/// balance what it has between P1 and P2, too, would cost more than to leave that with the rest.
-///
-/// The integrals behind it are sums over some points of pieces of the triangle. Where f is smooth their errors are
-/// known from Taylor's theorem: f is a polynomial of degree k − 1 but for R_k = max |d^k f(x_T + t (x − x_T)) / dt^k| / k!,
-/// and a rule of degree m integrates f φ with φ of degree j but for 2 R_{m − j + 1} ∫ |φ|, for its weights are positive.
+/// The body load f on one triangle as scheme and certificate see it: by its projection Π₂f onto P2, which
+/// does the work of f on what is quadratic, and by the Πf that stresses balance. That is Π₂f, or the
+/// projection onto P1 where f jumps: to balance what it has between P1 and P2, too, would cost more than to
+/// leave that with the rest.
 struct ProjectedLoad {
   using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 6, 0, 2, 6>;
 
@@ -23,6 +20,7 @@ struct ProjectedLoad {
   double rest = 0, unbalanced = 0;  ///< ‖f − Π₂f‖ and ‖f − Πf‖ are at most this
   /// (f − Πf, φ) is at most this times max |φ|, for linear and for quadratic φ.
   double uncertain_force = 0, uncertain_work = 0;
+  bool jumps = false;  ///< Πf is Π₁f in a component that jumps
 };
 
 /// The load of a problem on all triangles of its mesh.

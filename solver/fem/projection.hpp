@@ -1,0 +1,36 @@
+#pragma once
+
+#include "fem/triangle_pieces.hpp"
+
+namespace signorini {
+
+/// A function f on a triangle by its projections onto polynomials. Norms and integrals are those of the
+/// reference triangle.
+///
+/// The integrals behind it are sums over some points of pieces of the triangle. Where f is smooth their
+/// errors are known from Taylor's theorem: f is a polynomial of degree k − 1 but for R_k = max |d^k f(x_T + t
+/// (x − x_T)) / dt^k| / k!, and a rule of degree m integrates f φ with φ of degree j but for 2 R_{m − j + 1}
+/// ∫ |φ|, for its weights are positive.
+struct Projection {
+  using Nodes = Eigen::Matrix<double, 1, 6>;
+
+  /// Π₂f and Π₁f at the corners and at the middles of edge 0, 1, 2.
+  Nodes quadratic = Nodes::Zero(), linear = Nodes::Zero();
+  double rest = 0, beyond_linear = 0;  ///< ‖f − Π₂f‖ and ‖f − Π₁f‖ are at most this
+  double between = 0;                  ///< ‖Π₂f − Π₁f‖
+  /// (f − Π₂f, φ) is at most this times max |φ|, for linear and for quadratic φ.
+  double uncertain_force = 0, uncertain_work = 0;
+  bool jumps = false;  ///< or has a kink
+  bool is_finite = true;
+};
+
+/// With integrals that are off by about the tolerance, a value of f, and by some hundred times as much where
+/// f jumps. What is no formula is taken for what it is in the points of a rule.
+Projection project(const Field& field, const std::array<Point, 3>& corners, double tolerance,
+                   CellBudget& budget);
+
+/// Π₁ of a polynomial of P2, and its norm.
+Projection::Nodes linear_part(const Projection::Nodes& quadratic);
+double norm(const Projection::Nodes& quadratic);
+
+}  // namespace signorini
