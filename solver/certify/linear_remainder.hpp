@@ -11,8 +11,8 @@ namespace signorini {
 struct ReferenceMap {
   int reference = 0;  ///< of reference_triangles()
   int first = 0;
-  Eigen::Matrix2d jacobian;  ///< B
-  double stretch = 0;        ///< ‖B‖
+  Eigen::Matrix2d jacobian = Eigen::Matrix2d::Identity();  ///< B
+  double stretch = 0;                                      ///< ‖B‖
 };
 
 /// The one of the six maps with the least constant of linear_remainder().
