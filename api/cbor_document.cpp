@@ -8,8 +8,8 @@
 
 #include <cbor.h>
 
-#include "api/json_document.hpp"
 #include "api/json_writer.hpp"
+#include "api/limits.hpp"
 #include "api/typed_array.hpp"
 
 namespace signorini::api {
@@ -156,8 +156,8 @@ class Transcription {
   }
 
   void require_shallow(std::size_t depth) const {
-    if (depth > deepest)
-      fail("arrays and maps are nested deeper than " + std::to_string(deepest) + " levels");
+    if (depth > limits::nesting)
+      fail("arrays and maps are nested deeper than " + std::to_string(limits::nesting) + " levels");
   }
 
   void write_array(const Item& array, std::size_t depth) {

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "api/limits.hpp"
+
 namespace signorini::api {
 namespace {
 
-constexpr std::size_t longest = 1000;
 constexpr int deepest = 64;
 constexpr std::string_view blanks = " \t\r\n";
 constexpr std::string_view operators = "+-*/^()<>=!&|?:,";
@@ -74,9 +75,9 @@ std::size_t behind_name(std::string_view text, std::size_t i) {
 
 std::string text_fault(std::string_view text) {
   if (text.find_first_not_of(blanks) == std::string_view::npos) return "the expression is empty";
-  if (text.size() > longest)
+  if (text.size() > limits::expression)
     return "the expression has " + std::to_string(text.size()) + " characters; the most is " +
-           std::to_string(longest);
+           std::to_string(limits::expression);
   if (const auto odd = std::ranges::find_if_not(text, is_allowed); odd != text.end())
     return "character " + std::to_string(1 + (odd - text.begin())) +
            " may not stand in an expression; allowed are letters a-z and A-Z, digits, . _ blanks and " +

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "api/json_pointer.hpp"
+#include "api/limits.hpp"
 #include "api/wording.hpp"
 
 namespace signorini::api {
@@ -34,7 +35,7 @@ std::string cause(std::string message) {
 }
 
 /// Builds the document from the parser's events, and ends the parse at what this service does not take.
-/// Nesting is limited while parsing: a document that is too deep never comes into being.
+/// Nesting and numbers are limited while parsing: a document that is too large never comes into being.
 class Builder : public nlohmann::json_sax<json> {
  public:
   explicit Builder(std::string_view text) : text_(text) {}
@@ -55,6 +56,7 @@ class Builder : public nlohmann::json_sax<json> {
   bool end_array() override { return close(); }
 
   bool key(string_t& name) override {
+    if (++members_ > limits::members) throw too_many(limits::members, "members of objects");
     if (open_.back()->contains(name))
       throw MalformedJson("the member " + in_quotes(name) + " at " + in_quotes(pointer_to(pointer(), name)) +
                           " is there twice; give it once");
@@ -76,9 +78,15 @@ class Builder : public nlohmann::json_sax<json> {
     return true;
   }
 
+  static MalformedJson too_many(std::size_t most, const std::string& what) {
+    return MalformedJson("there are more than " + std::to_string(most) + ' ' + what +
+                         " in the body; no problem has as many");
+  }
+
   bool open(json container) {
-    if (open_.size() == deepest)
-      throw MalformedJson("arrays and objects are nested deeper than " + std::to_string(deepest) + " levels");
+    if (open_.size() == limits::nesting)
+      throw MalformedJson("arrays and objects are nested deeper than " + std::to_string(limits::nesting) +
+                          " levels");
     open_.push_back(insert(std::move(container)));
     names_.emplace_back();
     return true;
@@ -93,6 +101,7 @@ class Builder : public nlohmann::json_sax<json> {
   /// Puts the value where the document has come to. Containers do not move while they are open, for
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
+    if (++values_ > limits::values) throw too_many(limits::values, "values");
     if (open_.empty()) {
       root_ = std::move(value);
       return &root_;
@@ -114,6 +123,7 @@ class Builder : public nlohmann::json_sax<json> {
 
   std::string_view text_;
   json root_;
+  std::size_t values_ = 0, members_ = 0;
   std::vector<json*> open_;
   std::vector<std::string> names_;  ///< the member being read of each open object
 };

@@ -7,11 +7,9 @@
 
 namespace signorini::api {
 
-/// How many arrays and objects may stand within each other.
-inline constexpr std::size_t deepest = 64;
-
 /// A text that is not a JSON document as this service takes them (I-JSON, RFC 7493): a syntax error,
-/// invalid UTF-8, a duplicate member, a number that overflows, nesting deeper than 64.
+/// invalid UTF-8, a duplicate member, a number that overflows, more nesting, values or members than the
+/// limits.
 class MalformedJson : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

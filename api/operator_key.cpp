@@ -10,10 +10,14 @@ std::string operator_key(const nlohmann::json& document) {
   return key.dump();
 }
 
-std::string load_key(const nlohmann::json& load, const nlohmann::json& boundary) {
-  nlohmann::json key = boundary;
-  for (auto& condition : key) condition.erase("gap");
-  return key.dump() + load.dump();
+std::string load_key(const nlohmann::json& patch) {
+  nlohmann::json key = nlohmann::json::object();
+  if (patch.contains("load")) key["load"] = patch["load"];
+  if (patch.contains("boundary"))
+    for (const auto& [part, change] : patch["boundary"].items())
+      for (const auto& [member, value] : change.items())
+        if (member != "gap") key["boundary"][part][member] = value;
+  return key.dump();
 }
 
 }  // namespace signorini::api

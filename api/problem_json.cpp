@@ -1,14 +1,39 @@
 #include "api/problem_json.hpp"
 
 #include "api/json_document.hpp"
+#include "api/limits.hpp"
 #include "api/operator_key.hpp"
 #include "api/problem_members.hpp"
 #include "solve.hpp"
+#include "sweep_check.hpp"
 
 namespace signorini::api {
 namespace {
 
 using nlohmann::json;
+
+/// What the check of a sweep's entries may take, about 10 ms; the solve checks the others.
+constexpr double most_steps_of_sweep = 1e6;
+
+std::size_t characters_in(const json& value) {
+  if (const auto* text = value.get_ptr<const std::string*>()) return text->size();
+  std::size_t characters = 0;
+  if (value.is_structured())
+    for (const json& element : value) characters += characters_in(element);
+  return characters;
+}
+
+/// Whether all but the domain holds no more text than a problem may; adds a fault if not.
+bool has_short_texts(const Value& document) {
+  std::size_t characters = 0;
+  for (const auto& [name, member] : document.json().items())
+    if (name != "domain") characters += characters_in(member);
+  if (characters <= limits::texts) return true;
+  document.fault("its titles and expressions have " + std::to_string(characters) +
+                 " characters together; they may have " + std::to_string(limits::texts) +
+                 ": shorten the expressions, or split the sweep");
+  return false;
+}
 
 Problem read_problem(const Object& document) {
   Problem problem;
@@ -34,7 +59,7 @@ Problem read_problem(const Object& document) {
 Request read_request(const Value& value) {
   Request request;
   const auto document = value.object();
-  if (!document) return request;
+  if (!document || !has_short_texts(value)) return request;
   document->allow({"title", "model", "domain", "mesh", "material", "load", "boundary", "scheme", "solver",
                    "sweep", "study"},
                   "a problem");
@@ -58,10 +83,11 @@ Request parse_request(std::string_view text) {
   Request request = read_request(Value(document, "", faults));
   faults.throw_if_any();
   request.problem.operator_key = operator_key(document);
-  request.problem.load_key = load_key(document.value("load", json()), document.at("boundary"));
+  request.problem.load_key = load_key(json::object());
   if (auto found = validate(request.problem, request.settings); !found.empty())
     throw InvalidProblem(std::move(found));
-  if (auto found = validate(request.problem, request.sweep); !found.empty())
+  if (auto found = faults_of_sweep(request.problem, request.sweep, most_steps_of_sweep, nullptr);
+      !found.empty())
     throw InvalidProblem(std::move(found));
   if (!request.study) return request;
   if (auto found = validate(request.problem, *request.study, request.settings); !found.empty())

@@ -22,7 +22,8 @@ struct Request {
 
 /// Reads a problem document (api-contract, "A problem"). Throws MalformedJson if the text is no JSON, and
 /// InvalidProblem with every fault found, each with its JSON pointer and the allowed values: of the
-/// document, and if it has none, those that validate() of the solver sees.
+/// document, and if it has none, those that validate() of the solver sees, of a long sweep in the first
+/// entries.
 Request parse_request(std::string_view text);
 
 }  // namespace signorini::api

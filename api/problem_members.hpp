@@ -35,6 +35,12 @@ Material read_material(const Value& value, Model model);
 /// The body load.
 VectorField read_load(const Value& value, Model model);
 
+/// The name under which a boundary has the condition of every part that it does not name.
+inline constexpr std::string_view every_other_part = "all";
+
+/// The conditions by the names that they stand under.
+std::map<std::string, Condition> read_conditions(const Value& value, Model model);
+
 /// The conditions by part of the domain; `all` is resolved to the parts that are not named.
 std::map<std::string, Condition> read_boundary(const Value& value, Model model, const Domain& domain);
 

@@ -1,12 +1,12 @@
 #include <algorithm>
+#include <set>
 
+#include "api/limits.hpp"
 #include "api/problem_members.hpp"
 #include "mesh/domain_mesh.hpp"
 
 namespace signorini::api {
 namespace {
-
-constexpr std::string_view every_other_part = "all";
 
 /// A type of condition reads its own members of the object; nothing if they are not what it takes.
 using ReadCondition = std::optional<Condition> (*)(const Object& object, Model model);
@@ -73,30 +73,44 @@ std::optional<Condition> read_condition(const Value& value, Model model) {
   return (*read)(*object, model);
 }
 
-void check_part(const Value& value, const std::string& part, const std::vector<std::string>& parts) {
+void check_names(const Value& boundary, const std::vector<std::string>& parts) {
   std::vector<std::string_view> known(parts.begin(), parts.end());
   known.push_back(every_other_part);
-  if (std::ranges::find(known, part) == known.end())
-    value.fault("the domain has no part " + in_quotes(part) + suggestion(part, known) +
-                "; known are: " + list_of(known));
+  const std::set<std::string_view> sorted(known.begin(), known.end());
+  for (const auto& [part, condition] : boundary.json().items()) {
+    if (boundary.faults().is_full()) return;
+    if (sorted.contains(part)) continue;
+    boundary.faults().add(pointer_to(boundary.pointer(), part), "the domain has no part " + in_quotes(part) +
+                                                                    suggestion(part, known) +
+                                                                    "; known are: " + list_of(known));
+  }
 }
 
 }  // namespace
 
-std::map<std::string, Condition> read_boundary(const Value& value, Model model, const Domain& domain) {
+std::map<std::string, Condition> read_conditions(const Value& value, Model model) {
   std::map<std::string, Condition> conditions;
+  const auto object = value.object();
+  if (!object) return conditions;
+  if (const std::size_t count = value.json().size(); count > limits::parts) {
+    value.fault("must have at most " + std::to_string(limits::parts) + " conditions; it has " +
+                std::to_string(count));
+    return conditions;
+  }
+  for (const auto& [part, member] : object->members())
+    if (const auto condition = read_condition(member, model)) conditions.emplace(part, *condition);
+  return conditions;
+}
+
+std::map<std::string, Condition> read_boundary(const Value& value, Model model, const Domain& domain) {
   // A rectangle has its parts whatever its size; any other domain with a fault has none that a name could be
   // held against.
   const bool is_rectangle =
       std::holds_alternative<Rectangle>(domain) && !value.faults().has_any_at("/domain/type");
   const bool known = is_rectangle || !value.faults().has_any_at("/domain");
   const std::vector<std::string> parts = known ? part_names(domain) : std::vector<std::string>{};
-  const auto object = value.object();
-  if (!object) return conditions;
-  for (const auto& [part, member] : object->members()) {
-    if (known) check_part(member, part, parts);
-    if (const auto condition = read_condition(member, model)) conditions.emplace(part, *condition);
-  }
+  if (known && value.json().is_object()) check_names(value, parts);
+  std::map<std::string, Condition> conditions = read_conditions(value, model);
   // insert() leaves the parts alone that have a condition of their own.
   if (const auto rest = conditions.extract(std::string(every_other_part)); !rest.empty())
     for (const std::string& part : parts) conditions.insert({part, rest.mapped()});

@@ -1,17 +1,19 @@
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "api/gmsh.hpp"
+#include "api/limits.hpp"
 #include "api/problem_members.hpp"
 
 namespace signorini::api {
 namespace {
 
-constexpr std::size_t longest_part_name = 200;
-
 std::vector<Point> read_points(const Value& value) {
   std::vector<Point> points;
-  for (const Value& element : value.list("an array of points, [[x, y], ...]"))
+  value.for_each("an array of points, [[x, y], ...]", [&](const Value& element) {
     points.push_back(read_pair(element, "a point, [x, y]", false).value_or(Point::Zero()));
+  });
   return points;
 }
 
@@ -19,6 +21,13 @@ std::vector<Point> read_points(const Value& value) {
 template <std::size_t count>
 std::array<int, count> read_numbers(const Value& value, std::string_view expected) {
   std::array<int, count> numbers{};
+  const auto is_number = [](double number) {
+    return number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number);
+  };
+  if (const auto plain = value.numbers<count>(); plain && std::ranges::all_of(*plain, is_number)) {
+    std::ranges::transform(*plain, numbers.begin(), [](double number) { return static_cast<int>(number); });
+    return numbers;
+  }
   if (const auto elements = value.elements(count, expected))
     for (std::size_t k = 0; k < count; ++k)
       numbers[k] = (*elements)[k].integer(0, std::numeric_limits<int>::max()).value_or(0);
@@ -53,7 +62,7 @@ std::optional<Arc> read_arc(const Value& value, int ring, int vertex) {
 /// The vertices of a ring; its arcs go to those of the polygon.
 std::vector<Point> read_ring(const Value& value, int ring, Polygon& polygon) {
   std::vector<Point> vertices;
-  for (const Value& element : value.list("an array of points, [[x, y], ...]")) {
+  for (const Value& element : value.list("an array of points, [[x, y], ...]", limits::vertices)) {
     Point at = Point::Zero();
     if (element.json().is_object()) {
       const Object vertex = *element.object();
@@ -95,14 +104,16 @@ Domain read_polygon(const Object& object) {
   if (const auto vertices = object.require("vertices", "the outer ring, [[x, y], ...]"))
     polygon.vertices = read_ring(*vertices, 0, polygon);
   if (const auto holes = object.find("holes"))
-    for (const Value& hole : holes->list("an array of holes, each a ring of points or a circle")) {
+    for (const Value& hole :
+         holes->list("an array of holes, each a ring of points or a circle", limits::holes)) {
       const int ring = static_cast<int>(polygon.holes.size()) + 1;
       polygon.holes.push_back(hole.json().is_object() ? read_circle(hole, ring, polygon)
                                                       : read_ring(hole, ring, polygon));
     }
   if (const auto sides = object.find("sides"))
-    for (const Value& side : sides->list("an array of part names, one an edge of the outer ring"))
-      polygon.sides.push_back(side.text(longest_part_name).value_or(""));
+    for (const Value& side :
+         sides->list("an array of part names, one an edge of the outer ring", limits::vertices))
+      polygon.sides.push_back(side.text(limits::part_name).value_or(""));
   const bool one_each = polygon.sides.empty() || polygon.sides.size() == polygon.vertices.size();
   if (!one_each)
     object.find("sides")->fault("must name every edge of the outer ring, " +
@@ -116,15 +127,22 @@ Domain read_mesh_data(const Object& object) {
   if (const auto points = object.require("points", "the points, [[x, y], ...]"))
     data.points = read_points(*points);
   if (const auto triangles = object.require("triangles", "triples of point numbers, from 0"))
-    for (const Value& triangle : triangles->list("an array of triples of point numbers"))
+    triangles->for_each("an array of triples of point numbers", [&](const Value& triangle) {
       data.triangles.push_back(read_numbers<3>(triangle, "three point numbers"));
+    });
   const auto boundary = object.require("boundary", "the edges of each part, as pairs of point numbers");
   const auto parts = boundary ? boundary->object() : std::nullopt;
   if (!parts) return data;
+  if (const std::size_t count = boundary->json().size(); count > limits::parts) {
+    boundary->fault("must have at most " + std::to_string(limits::parts) + " parts; it has " +
+                    std::to_string(count));
+    return data;
+  }
   for (const auto& [name, edges] : parts->members()) {
     data.boundary.emplace_back(name, std::vector<std::array<int, 2>>{});
-    for (const Value& edge : edges.list("an array of pairs of point numbers"))
+    edges.for_each("an array of pairs of point numbers", [&](const Value& edge) {
       data.boundary.back().second.push_back(read_numbers<2>(edge, "two point numbers"));
+    });
   }
   return data;
 }
@@ -145,6 +163,8 @@ Domain read_gmsh(const Object& object) {
 }  // namespace
 
 std::optional<Eigen::Vector2d> read_pair(const Value& value, std::string_view expected, bool positive) {
+  if (const auto plain = value.numbers<2>(); plain && (!positive || ((*plain)[0] > 0 && (*plain)[1] > 0)))
+    return Eigen::Vector2d((*plain)[0], (*plain)[1]);
   const auto elements = value.elements(2, expected);
   if (!elements) return std::nullopt;
   const auto read = [&](const Value& element) { return positive ? element.positive() : element.number(); };

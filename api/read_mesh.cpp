@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "api/limits.hpp"
 #include "api/problem_members.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "mesh/rectangle.hpp"
@@ -8,13 +9,11 @@
 namespace signorini::api {
 namespace {
 
-constexpr int most_divisions = 10000;
-constexpr int most_triangles = 20'000'000;
-
 std::optional<Divisions> read_divisions(const Value& value) {
   const auto elements = value.elements(2, "an array of two whole numbers, [nx, ny]");
   if (!elements) return std::nullopt;
-  const auto x = (*elements)[0].integer(1, most_divisions), y = (*elements)[1].integer(1, most_divisions);
+  const auto x = (*elements)[0].integer(1, limits::divisions),
+             y = (*elements)[1].integer(1, limits::divisions);
   if (!x || !y) return std::nullopt;
   return Divisions{*x, *y};
 }
@@ -23,15 +22,15 @@ std::optional<Divisions> read_divisions(const Value& value) {
 bool is_absurd(const MeshRequest& mesh, const Rectangle& domain) {
   // First in floating point: the number of squares of a tiny size would overflow.
   if (const auto* edge = std::get_if<LargestEdge>(&mesh.fineness))
-    if (domain.size.maxCoeff() / edge->length > static_cast<double>(most_triangles)) return true;
+    if (domain.size.maxCoeff() / edge->length > static_cast<double>(limits::triangles)) return true;
   const Divisions squares = divisions(domain, mesh);
   const std::int64_t triangles_per_square = mesh.pattern == Pattern::crossed ? 4 : 2;
   const std::int64_t refined = std::int64_t{1} << (2 * mesh.refine);
-  return std::int64_t{squares.x} * squares.y * triangles_per_square > most_triangles / refined;
+  return std::int64_t{squares.x} * squares.y * triangles_per_square > limits::triangles / refined;
 }
 
 std::string limit() {
-  return "asks for more than " + std::to_string(most_triangles) + " triangles; ";
+  return "asks for more than " + std::to_string(limits::triangles) + " triangles; ";
 }
 
 void read_size(const Value& value, const Rectangle& domain, MeshRequest& mesh) {
@@ -41,7 +40,7 @@ void read_size(const Value& value, const Rectangle& domain, MeshRequest& mesh) {
   if (is_absurd(mesh, domain)) {
     // In both ways of cutting squares, edges of length h make about 4 area / h² triangles.
     const double side = std::sqrt(domain.size.x()) * std::sqrt(domain.size.y());
-    const double sensible = side * 2 / std::sqrt(static_cast<double>(most_triangles));
+    const double sensible = side * 2 / std::sqrt(static_cast<double>(limits::triangles));
     value.fault(limit() + "give a size above " + shortest(sensible));
   }
 }
@@ -54,8 +53,8 @@ void read_squares(const Value& value, const Rectangle& domain, MeshRequest& mesh
 }
 
 void read_refine(const Object& object, MeshRequest& mesh) {
-  constexpr int most_refinements = 12;
-  if (const auto times = object.find("refine")) mesh.refine = times->integer(0, most_refinements).value_or(0);
+  if (const auto times = object.find("refine"))
+    mesh.refine = times->integer(0, limits::refinements).value_or(0);
 }
 
 void read_adaptive(const Object& object, MeshRequest& mesh) {
@@ -69,7 +68,7 @@ void read_adaptive(const Object& object, MeshRequest& mesh) {
     mesh.adaptive->tolerance =
         tolerance->number("a number between 0 and 1", [](double t) { return t > 0 && t < 1; }).value_or(0.5);
   if (const auto most = goal->find("max_triangles"))
-    mesh.adaptive->max_triangles = most->integer(1, most_triangles).value_or(mesh.adaptive->max_triangles);
+    mesh.adaptive->max_triangles = most->integer(1, limits::triangles).value_or(mesh.adaptive->max_triangles);
 }
 
 MeshRequest read_rectangle_mesh(const Value& value, const Object& object, const Rectangle& domain) {
@@ -109,10 +108,11 @@ MeshRequest read_polygon_mesh(const Object& object, const Polygon& domain) {
   read_refine(object, mesh);
   read_adaptive(object, mesh);
   mesh.fineness = mesh.adaptive ? coarse_edge(domain) : LargestEdge{1};
-  if (const auto size = mesh.adaptive ? object.find("size") : object.require("size", "the largest edge length"))
+  if (const auto size =
+          mesh.adaptive ? object.find("size") : object.require("size", "the largest edge length"))
     mesh.fineness = LargestEdge{size->positive().value_or(1)};
   if (const auto sizes = object.find("sizes"))
-    for (const Value& local : sizes->list("an array of local sizes, {at, radius, size}"))
+    for (const Value& local : sizes->list("an array of local sizes, {at, radius, size}", limits::local_sizes))
       mesh.sizes.push_back(read_local_size(local));
   return mesh;
 }

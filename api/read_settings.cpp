@@ -1,9 +1,8 @@
+#include "api/limits.hpp"
 #include "api/problem_members.hpp"
 
 namespace signorini::api {
 namespace {
-
-constexpr int most_iterations = 1'000'000;
 
 /// A parameter of the Uzawa iteration as the document has it.
 struct Parameter {
@@ -31,7 +30,7 @@ std::optional<double> read_tolerance(const Object& object, bool accelerated) {
 
 std::optional<int> read_max_iterations(const Object& object) {
   const auto value = object.find("max_iterations");
-  return value ? value->integer(1, most_iterations) : std::nullopt;
+  return value ? value->integer(1, limits::iterations) : std::nullopt;
 }
 
 Method read_paper_form(const Object& object, double rho, double augmentation) {

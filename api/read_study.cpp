@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "api/json_pointer.hpp"
+#include "api/limits.hpp"
 #include "api/problem_members.hpp"
 
 namespace signorini::api {
@@ -8,11 +9,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t most_meshes = 64;
-
 std::vector<Scheme> read_schemes(const Value& value) {
   std::vector<Scheme> schemes;
-  const std::vector<Value> entries = value.list("an array of schemes: " + list_of(only_names(scheme_names)));
+  const std::vector<Value> entries =
+      value.list("an array of schemes: " + list_of(only_names(scheme_names)), limits::study_schemes);
   if (value.json().is_array() && entries.empty()) value.fault("must have at least one scheme");
   for (const Value& entry : entries) {
     const auto scheme = entry.one_of(scheme_names);
@@ -95,10 +95,8 @@ std::vector<StudyMesh> read_meshes(const Value& value, const Object& study, cons
   std::vector<StudyMesh> meshes;
   for (const auto& [name, set_fineness] : finenesses)
     if (const auto member = study.find(name)) {
-      const std::vector<Value> entries = member->list("an array of meshes");
-      if (member->json().is_array() && (entries.empty() || entries.size() > most_meshes))
-        member->fault("must have 1 to " + std::to_string(most_meshes) + " entries; it has " +
-                      std::to_string(entries.size()));
+      const std::vector<Value> entries = member->list("an array of meshes", limits::study_meshes);
+      if (member->json().is_array() && member->json().empty()) member->fault("must have at least one entry");
       for (const Value& entry : entries) meshes.push_back(read_entry(entry, mesh, set_fineness, problem));
     }
   return meshes;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "api/json_pointer.hpp"
+#include "api/limits.hpp"
 #include "api/operator_key.hpp"
 #include "api/problem_members.hpp"
 
@@ -8,9 +9,6 @@ namespace signorini::api {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t most_entries = 10'000;
-constexpr std::size_t longest_title = 200;
 
 /// Adds a fault for every member that a sweep cannot change.
 void allow_only(const Object& object, const std::vector<std::string_view>& names) {
@@ -42,40 +40,63 @@ void check_patch(const Value& value, const json& boundary) {
   if (const auto conditions = patch->find("boundary")) check_conditions(*conditions, boundary);
 }
 
+/// Reads again what the patch touches; the rest is the problem's.
 Variation read_variation(const Value& patch, const json& load, const json& boundary, const Problem& problem) {
   const Model model = components(problem.material) == 1 ? Model::membrane : Model::elasticity;
-  json merged{{"load", load}, {"boundary", boundary}};
-  merged.merge_patch(patch.json());
-  const auto member = [&](const char* name) {
-    return Value(merged[name], pointer_to(patch.pointer(), name), patch.faults());
-  };
-  Variation variation;
-  if (merged.contains("title")) variation.title = read_title(member("title"));
-  if (merged.contains("load") && !merged["load"].is_null()) variation.body = read_load(member("load"), model);
-  variation.boundary = read_boundary(member("boundary"), model, problem.domain);
-  variation.load_key = load_key(merged.value("load", json()), merged["boundary"]);
+  Variation variation{"", problem.body, problem.boundary, load_key(patch.json())};
+  const Object changes = *patch.object();
+  if (const auto title = changes.find("title"); title && !title->json().is_null())
+    variation.title = read_title(*title);
+  if (const auto member = changes.find("load")) {
+    json merged = load;
+    merged.merge_patch(member->json());
+    variation.body = merged.is_null() ? VectorField() : read_load(member->instead(merged), model);
+  }
+  if (const auto member = changes.find("boundary")) {
+    json merged = json::object();
+    for (const auto& [part, change] : member->json().items()) {
+      merged[part] = boundary.at(part);
+      merged[part].merge_patch(change);
+    }
+    for (auto& [part, condition] : read_conditions(member->instead(merged), model)) {
+      if (part != every_other_part)
+        variation.boundary.insert_or_assign(part, condition);
+      else
+        for (auto& [other, own] : variation.boundary)
+          if (!boundary.contains(other)) own = condition;
+    }
+  }
   return variation;
 }
 
 }  // namespace
 
 std::string read_title(const Value& value) {
-  return value.text(longest_title).value_or("");
+  return value.text(limits::title).value_or("");
 }
 
 std::vector<Variation> read_sweep(const Value& value, const Object& document, const Problem& problem) {
-  const std::vector<Value> patches = value.list("an array of changes, each an object as the problem itself");
-  if (value.json().is_array() && (patches.empty() || patches.size() > most_entries))
-    value.fault("must have 1 to " + std::to_string(most_entries) + " entries; it has " +
-                std::to_string(patches.size()));
+  const std::vector<Value> patches =
+      value.list("an array of changes, each an object as the problem itself", limits::sweep_entries);
+  if (value.json().is_array() && value.json().empty()) value.fault("must have at least one entry");
   const auto boundary = document.find("boundary"), load = document.find("load");
   if (!boundary || !boundary->json().is_object()) return {};
-  for (const Value& patch : patches) check_patch(patch, boundary->json());
+  if (patches.size() * problem.boundary.size() > limits::sweep_conditions)
+    value.fault("has " + std::to_string(patches.size()) + " entries with " +
+                std::to_string(problem.boundary.size()) + " conditions each; together they may have " +
+                std::to_string(limits::sweep_conditions) +
+                ": split the sweep, or give several edges one part");
+  for (const Value& patch : patches) {
+    if (value.faults().is_full()) break;
+    check_patch(patch, boundary->json());
+  }
   // What is wrong already would be wrong in every entry again.
   std::vector<Variation> sweep;
   if (value.faults().has_any_at("")) return sweep;
-  for (const Value& patch : patches)
+  for (const Value& patch : patches) {
+    if (value.faults().is_full()) break;
     sweep.push_back(read_variation(patch, load ? load->json() : json(), boundary->json(), problem));
+  }
   return sweep;
 }
 

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/json_pointer.hpp"
-
 namespace signorini::api {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t most_faults = 100;
 
 std::string found(const json& value) {
   switch (value.type()) {
@@ -38,7 +34,7 @@ std::size_t characters(const std::string& text) {
 }  // namespace
 
 void Faults::add(std::string pointer, std::string detail) {
-  if (faults_.size() < most_faults) {
+  if (!is_full()) {
     faults_.push_back({std::move(pointer), std::move(detail)});
   } else {
     ++unlisted_;
@@ -56,7 +52,8 @@ bool Faults::has_any_at(std::string_view pointer) const {
 void Faults::throw_if_any() const {
   if (faults_.empty()) return;
   std::vector<Fault> faults = faults_;
-  if (unlisted_ > 0) faults.push_back({"", std::to_string(unlisted_) + " more faults are not listed"});
+  if (unlisted_ > 0)
+    faults.push_back({"", "at least " + std::to_string(unlisted_) + " more faults are not listed"});
   throw InvalidProblem(std::move(faults));
 }
 
@@ -112,10 +109,12 @@ std::optional<std::vector<Value>> Value::elements(std::size_t length, std::strin
   return elements;
 }
 
-std::vector<Value> Value::list(std::string_view expected) const {
+std::vector<Value> Value::list(std::string_view expected, std::size_t most) const {
   std::vector<Value> elements;
   if (!json_->is_array())
     unexpected(expected);
+  else if (json_->size() > most)
+    fault("must have at most " + std::to_string(most) + " entries; it has " + std::to_string(json_->size()));
   else
     for (std::size_t i = 0; i < json_->size(); ++i)
       elements.emplace_back((*json_)[i], pointer_to(pointer_, i), *faults_);
@@ -129,10 +128,13 @@ std::optional<Object> Value::object() const {
 }
 
 void Object::allow(const std::vector<std::string_view>& names, std::string_view what) const {
-  for (const auto& [name, member] : members())
+  for (const auto& [name, json] : value_.json().items()) {
+    if (value_.faults().is_full()) return;
     if (std::ranges::find(names, name) == names.end())
-      member.fault("is not a member of " + std::string(what) + suggestion(name, names) +
-                   "; allowed are: " + list_of(names));
+      Value(json, pointer_to(value_.pointer(), name), value_.faults())
+          .fault("is not a member of " + std::string(what) + suggestion(name, names) +
+                 "; allowed are: " + list_of(names));
+  }
 }
 
 std::optional<Value> Object::find(std::string_view name) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -8,18 +9,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "api/json_pointer.hpp"
 #include "api/names.hpp"
 #include "api/wording.hpp"
 #include "problem/field.hpp"
 
 namespace signorini::api {
 
-/// The faults of a document, in the order found. A reply stays readable: behind the hundredth fault they
-/// are only counted.
+/// The faults of a document, in the order found. A reply stays readable, and a body full of faults is soon
+/// refused: behind the hundredth they are only counted, as far as they are looked for at all.
 class Faults {
  public:
   void add(std::string pointer, std::string detail);
   void add(const InvalidProblem& invalid);
+
+  /// Whether so many are listed that the rest of a long list is not worth reading.
+  bool is_full() const { return faults_.size() == most; }
 
   /// Whether the value at the pointer, or one inside it, has a fault.
   bool has_any_at(std::string_view pointer) const;
@@ -28,6 +33,7 @@ class Faults {
   void throw_if_any() const;
 
  private:
+  static constexpr std::size_t most = 100;
   std::vector<Fault> faults_;
   std::size_t unlisted_ = 0;
 };
@@ -59,8 +65,29 @@ class Value {
   /// The elements of an array of the given length; `expected` describes it.
   std::optional<std::vector<Value>> elements(std::size_t length, std::string_view expected) const;
 
-  /// The elements of an array of any length; none if it is no array, which adds a fault.
-  std::vector<Value> list(std::string_view expected) const;
+  /// The elements of an array of at most so many; none if it is no array or a longer one, which adds a fault.
+  std::vector<Value> list(std::string_view expected, std::size_t most) const;
+
+  /// The same of a list that is as long as the body allows: calls read(element) with each, until there are
+  /// faults enough.
+  template <typename Read>
+  void for_each(std::string_view expected, const Read& read) const {
+    if (!json_->is_array()) return unexpected(expected);
+    for (std::size_t i = 0; i < json_->size() && !faults_->is_full(); ++i)
+      read(Value((*json_)[i], pointer_to(pointer_, i), *faults_));
+  }
+
+  /// So many numbers in an array, without a word if it is anything else.
+  template <std::size_t count>
+  std::optional<std::array<double, count>> numbers() const {
+    std::array<double, count> numbers;
+    if (!json_->is_array() || json_->size() != count) return std::nullopt;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(*json_)[i].is_number()) return std::nullopt;
+      numbers[i] = (*json_)[i].get<double>();
+    }
+    return numbers;
+  }
 
   std::optional<Object> object() const;
 
@@ -77,6 +104,9 @@ class Value {
     }
     return std::nullopt;
   }
+
+  /// Another value in the place of this one.
+  Value instead(const nlohmann::json& json) const { return {json, pointer_, *faults_}; }
 
   void fault(std::string detail) const { faults_->add(pointer_, std::move(detail)); }
 

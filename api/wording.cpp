@@ -10,6 +10,7 @@ namespace {
 
 /// A message stays readable, and small, whatever the client sent.
 constexpr std::size_t longest_quote = 60;
+constexpr std::size_t most_listed = 50;
 
 /// The number of insertions, deletions and replacements of single bytes that turn one into the other.
 std::size_t edit_distance(std::string_view from, std::string_view to) {
@@ -38,11 +39,11 @@ std::string in_quotes(std::string_view text) {
 
 std::string list_of(const std::vector<std::string_view>& names) {
   std::string list;
-  for (const std::string_view name : names) {
+  for (std::size_t i = 0; i < std::min(names.size(), most_listed); ++i) {
     if (!list.empty()) list += ", ";
-    list += name;
+    list += names[i];
   }
-  return list;
+  return names.size() > most_listed ? list + ", … (" + std::to_string(names.size()) + " in all)" : list;
 }
 
 std::string shortest(double number) {
@@ -51,7 +52,7 @@ std::string shortest(double number) {
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& names) {
-  if (word.size() > longest_quote || names.empty()) return {};
+  if (word.size() > longest_quote || names.empty() || names.size() > most_listed) return {};
   const auto distance = [&](std::string_view name) { return edit_distance(word, name); };
   const std::string_view nearest = *std::ranges::min_element(names, {}, distance);
   const std::size_t slips = nearest.size() <= 4 ? 1 : 2;

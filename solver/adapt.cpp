@@ -138,14 +138,14 @@ Eigen::VectorXd foreseen(const Eigen::VectorXd& shares, const std::vector<int>& 
 /// The largest shares in the square of the bound are refined, as far as they are foreseen to fall, until the
 /// square will have fallen to less than a third or the triangles have grown by half, or would be too many. To
 /// mark little and often grades the mesh as finely as many levels would, for the price of few.
-std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, std::size_t most) {
+std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, std::size_t most, Progress& progress) {
   constexpr double bulk = 0.2, fall = 0.3, growth = 1.5;
   Mesh mesh = solution.mesh;
   Eigen::VectorXd shares = solution.error_squares;
   const double enough = growth * static_cast<double>(mesh.triangles.size()), little = fall * shares.sum();
   for (bool first = true;; first = false) {
     std::vector<int> parents;
-    Mesh finer = bisect(mesh, mark(shares, bulk), parents);
+    Mesh finer = bisect(mesh, mark(shares, bulk), parents, &progress);
     if (!first && finer.triangles.size() > most) break;
     shares = foreseen(shares, parents);
     mesh = std::move(finer);
@@ -169,7 +169,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           Outcome::tolerance_not_met,
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
-    mesh = finer_mesh(levels.finest(), most);
+    mesh = finer_mesh(levels.finest(), most, progress);
     if (mesh->triangles.size() > most)
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +

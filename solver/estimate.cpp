@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "fem/clearance_space.hpp"
 #include "mesh/domain_mesh.hpp"
+#include "mesh/mesh_sizes.hpp"
 #include "mesh/rectangle.hpp"
 #include "solve.hpp"
 
@@ -26,40 +28,70 @@ void count_conditions(const Problem& problem, const std::string& part, std::int6
 /// The sides of a rectangle in a ring, so that the neighbours of a side are the ones before and after it.
 constexpr std::array kRing{"left", "bottom", "right", "top"};
 
-/// Without making the mesh: a rectangle may have millions of triangles.
-Counts count(const Problem& problem, const Rectangle& rectangle) {
-  const Divisions squares = divisions(rectangle, problem.mesh);
-  const std::int64_t refined = std::int64_t{1} << problem.mesh.refine;
-  const std::int64_t n = std::int64_t{squares.x} * squares.y * refined * refined;
-  const std::int64_t x = squares.x * refined, y = squares.y * refined;
-  const bool crossed = problem.mesh.pattern == Pattern::crossed;
-  Counts counts{(crossed ? 4 : 2) * n, (crossed ? 6 : 3) * n + x + y, (x + 1) * (y + 1) + (crossed ? n : 0)};
+/// The contact unknowns of a rectangle whose parts have so many edges.
+std::int64_t contact_unknowns(const Problem& problem, const std::vector<MeshSizes::Part>& parts) {
+  std::int64_t unknowns = 0;
   for (int side = 0; side < 4; ++side) {
-    const std::int64_t edges = side % 2 == 0 ? y : x;
-    count_conditions(problem, kRing[side], edges, counts);
     if (!condition_on<Contact>(problem, kRing[side])) continue;
-    counts.contact_unknowns += edges;
+    unknowns += parts[std::ranges::find(rectangle_parts(), kRing[side]) - rectangle_parts().begin()].edges;
     if (problem.scheme == Scheme::nonconforming) continue;
-    ++counts.contact_unknowns;  // the nodes, less those that a fixed neighbour holds
+    ++unknowns;  // the nodes, less those that a fixed neighbour holds
     for (const int neighbour : {(side + 1) % 4, (side + 3) % 4})
-      if (condition_on<Fixed>(problem, kRing[neighbour])) --counts.contact_unknowns;
+      if (condition_on<Fixed>(problem, kRing[neighbour])) --unknowns;
   }
+  return unknowns;
+}
+
+/// The edges whose middle becomes a node, or two where a curved boundary turns an elastic body's normal
+/// there.
+std::int64_t nodes_in_the_middle(const Problem& problem, const std::string& name,
+                                 const MeshSizes::Part& part) {
+  const auto* contact = condition_on<Contact>(problem, name);
+  if (!contact) return 0;
+  const bool turns = components(problem.material) == 2 && contact->direction.isZero(0);
+  return part.edges + (turns ? part.chords : 0);
+}
+
+/// Those of the mesh before its refinements: of the mesh itself, or nearly.
+std::int64_t contact_unknowns(const Problem& problem, const std::vector<std::string>& names,
+                              const std::vector<MeshSizes::Part>& parts, const std::optional<Mesh>& mesh) {
+  if (mesh) return make_clearance_space(problem, *mesh).unknowns;
+  std::int64_t unknowns = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!condition_on<Contact>(problem, names[i])) continue;
+    const bool by_nodes = problem.scheme == Scheme::conforming;
+    unknowns += by_nodes ? nodes_in_the_middle(problem, names[i], parts[i]) + 1 : parts[i].edges;
+  }
+  return unknowns;
+}
+
+/// Of the mesh that the problem asks for. Small ones are made, as long as they do not have more triangles
+/// together than `may_be_made`, which is lowered by them.
+Counts count(const Problem& problem, const PredictedSizes& predicted, std::int64_t& may_be_made) {
+  const std::vector<std::string> names = part_names(problem.domain);
+  const bool is_rectangle = std::holds_alternative<Rectangle>(problem.domain);
+  std::optional<Mesh> mesh;
+  if (!is_rectangle && may_be_made > 0) mesh = make_small_mesh(problem.domain, problem.mesh);
+  if (mesh) may_be_made -= static_cast<std::int64_t>(mesh->triangles.size());
+  MeshSizes sizes = mesh ? sizes_of(*mesh) : predicted(problem.mesh);
+  std::int64_t contact = is_rectangle ? 0 : contact_unknowns(problem, names, sizes.parts, mesh);
+  for (int i = 0; i < problem.mesh.refine; ++i) {
+    if (problem.scheme == Scheme::nonconforming) contact *= 2;
+    for (std::size_t p = 0; problem.scheme == Scheme::conforming && p < names.size(); ++p)
+      contact += nodes_in_the_middle(problem, names[p], sizes.parts[p]);
+    sizes = refined(sizes, 1);
+  }
+  if (is_rectangle) contact = contact_unknowns(problem, sizes.parts);
+
+  Counts counts{sizes.triangles, sizes.edges, sizes.points};
+  for (std::size_t p = 0; p < names.size(); ++p)
+    count_conditions(problem, names[p], sizes.parts[p].edges, counts);
+  counts.contact_unknowns = contact;
   return counts;
 }
 
-template <typename OtherDomain>
-Counts count(const Problem& problem, const OtherDomain&) {
-  const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
-  Counts counts{static_cast<std::int64_t>(mesh.triangles.size()),
-                static_cast<std::int64_t>(mesh.edges.size()), static_cast<std::int64_t>(mesh.points.size())};
-  for (const BoundaryPart& part : mesh.boundary)
-    count_conditions(problem, part.name, static_cast<std::int64_t>(part.edges.size()), counts);
-  counts.contact_unknowns = make_clearance_space(problem, mesh).unknowns;
-  return counts;
-}
-
-/// The sizes that a mesh may grow to: the boundary as the root of the number of triangles. Every interior edge
-/// has two of them, and by Euler there is about one point to two.
+/// The sizes that a mesh may grow to: the boundary as the root of the number of triangles. Every interior
+/// edge has two of them, and by Euler there is about one point to two.
 Counts grown(const Counts& start, const Adaptive& goal) {
   const auto triangles = std::max<std::int64_t>(start.triangles, goal.max_triangles);
   const double growth = static_cast<double>(triangles) / static_cast<double>(start.triangles);
@@ -75,11 +107,9 @@ Counts grown(const Counts& start, const Adaptive& goal) {
           boundary(start.contact_unknowns)};
 }
 
-}  // namespace
-
-Estimate estimate(const Problem& problem) {
+Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::int64_t& may_be_made) {
   const Spaces& spaces = spaces_of(problem.scheme, components(problem.material));
-  Counts counts = std::visit([&](const auto& domain) { return count(problem, domain); }, problem.domain);
+  Counts counts = count(problem, predicted, may_be_made);
   if (problem.mesh.adaptive) counts = grown(counts, *problem.mesh.adaptive);
   const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
   Estimate estimate;
@@ -102,11 +132,20 @@ Estimate estimate(const Problem& problem) {
   return estimate;
 }
 
+}  // namespace
+
+Estimate estimate(const Problem& problem) {
+  std::int64_t may_be_made = few_triangles;
+  return estimate(problem, PredictedSizes(problem.domain), may_be_made);
+}
+
 std::vector<Estimate> estimate(const Problem& problem, const Study& study, std::int64_t enough) {
   std::vector<Estimate> runs;
+  const PredictedSizes predicted(problem.domain);
+  std::int64_t may_be_made = few_triangles;
   for (const Scheme scheme : study.schemes)
     for (const StudyMesh& mesh : study.meshes) {
-      runs.push_back(estimate(run_of(problem, mesh, scheme)));
+      runs.push_back(estimate(run_of(problem, mesh, scheme), predicted, may_be_made));
       enough -= runs.back().unknowns.stress;
       if (enough < 0) return runs;
     }

@@ -20,7 +20,8 @@ inline void require_room(const Adaptive& goal, std::int64_t triangles) {
 /// The mesh that the problem asks for, refined where the spaces are not stable on it.
 inline std::shared_ptr<const Mesh> requested_mesh(const Problem& problem, Progress& progress) {
   progress.enter(Phase::mesh);
-  return std::make_shared<const Mesh>(stabilized(problem, make_domain_mesh(problem.domain, problem.mesh)));
+  return std::make_shared<const Mesh>(
+      stabilized(problem, make_domain_mesh(problem.domain, problem.mesh, &progress), &progress));
 }
 
 }  // namespace signorini

@@ -1,10 +1,13 @@
 #include "solve.hpp"
 
+#include <limits>
+
 #include "adapt.hpp"
 #include "condensed_problem.hpp"
 #include "paper_form.hpp"
 #include "requested_mesh.hpp"
 #include "sweep.hpp"
+#include "sweep_check.hpp"
 
 namespace signorini {
 namespace {
@@ -68,9 +71,12 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
 
 Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
                Observer& observer, OperatorCache* cache) {
-  if (auto faults = validate(problem, settings); !faults.empty()) throw InvalidProblem(std::move(faults));
-  if (auto faults = validate(problem, sweep); !faults.empty()) throw InvalidProblem(std::move(faults));
   Progress progress(observer, settings.time_limit);
+  progress.enter(Phase::mesh);
+  constexpr double all = std::numeric_limits<double>::infinity();
+  if (auto faults = validate(problem, settings); !faults.empty()) throw InvalidProblem(std::move(faults));
+  if (auto faults = faults_of_sweep(problem, sweep, all, &progress); !faults.empty())
+    throw InvalidProblem(std::move(faults));
   try {
     return solve_by_method(problem, sweep, settings, observer, cache, progress);
   } catch (const NotPositiveDefinite& failure) {

@@ -26,12 +26,12 @@ inline constexpr const char* paper_form_needs_one_mesh =
     "out, "
     "or use active_set";
 
-/// Sizes of the problem, exactly; memory and time, roughly. For a mesh that refines itself all of it is for
-/// the largest mesh that it may become, and the sizes are rough too.
+/// Sizes, exact but for large polygons; memory and time, roughly. Makes no large mesh. For a mesh that refines
+/// itself all of it is for the largest mesh that it may become, and the sizes are rough too.
 Estimate estimate(const Problem& problem);
 
-/// The same for every run of a study, in the order in which they are solved. A mesh may take long to make: it
-/// ends behind the run with which they have more stress unknowns together than `enough`.
+/// The same for every run of a study, in the order in which they are solved. It ends behind the run with which
+/// they have more stress unknowns together than `enough`.
 std::vector<Estimate> estimate(const Problem& problem, const Study& study,
                                std::int64_t enough = std::numeric_limits<std::int64_t>::max());
 
@@ -39,8 +39,8 @@ std::vector<Estimate> estimate(const Problem& problem, const Study& study,
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);
 
 /// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, and a body
-/// that cannot come to rest. On a mesh of more than 100,000 triangles it takes a coarse one for it, and
-/// nothing if the loads vary. The problem has no fault that validate() sees. Throws InvalidProblem and
+/// that cannot come to rest. A mesh of more than `few_triangles` and a load of a long formula are left to the
+/// solve. The problem has no fault that validate() sees. Throws InvalidProblem and
 /// SolveError.
 void require_rest(const Problem& problem);
 

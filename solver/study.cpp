@@ -148,12 +148,15 @@ Problem run_of(const Problem& problem, const StudyMesh& mesh, Scheme scheme) {
 std::vector<Fault> validate(const Problem& problem, const Study& study, const Settings& settings) {
   std::vector<Fault> faults;
   for (const StudyMesh& mesh : study.meshes) {
-    for (Fault& fault : validate(problem.domain, mesh.request)) faults.push_back({mesh.name, fault.detail});
+    for (Fault& fault : validate_request(problem.domain, mesh.request))
+      faults.push_back({mesh.name, fault.detail});
     if (mesh.request.adaptive && std::holds_alternative<PaperUzawa>(settings.method))
       faults.push_back({mesh.name, paper_form_needs_one_mesh});
   }
   if (!faults.empty()) return faults;
-  const Mesh coarse = make_coarse_mesh(problem.domain);
+  const std::optional<Mesh> made = make_coarse_mesh(problem.domain);
+  if (!made) return faults;
+  const Mesh& coarse = *made;
   const auto check = [&](const auto& evaluate, bool on_contact) {
     try {
       for (const BoundaryPart& part : coarse.boundary) {

@@ -1,12 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
 
 #include "fem/clearance_space.hpp"
+#include "fem/contact_direction.hpp"
 #include "fem/element.hpp"
-#include "fem/trace_space.hpp"
+#include "fem/quadrature.hpp"
 #include "mesh/domain_mesh.hpp"
-#include "problem/problem.hpp"
+#include "problem/fields.hpp"
+#include "progress.hpp"
 #include "solve.hpp"
+#include "sweep_check.hpp"
 
 namespace signorini {
 namespace {
@@ -30,15 +36,19 @@ class Validation {
     if (problem_.body.size() != 0 && problem_.body.size() != d)
       fault("/load/body",
             d == 1 ? "must be one number for a membrane" : "must be a pair for an elastic body");
-    if (faults_.empty()) check_fields(make_coarse_mesh(problem_.domain));
+    if (!faults_.empty()) return std::move(faults_);
+    if (const std::optional<Mesh> mesh = make_coarse_mesh(problem_.domain)) check_fields(*mesh);
     return std::move(faults_);
   }
 
-  std::vector<Fault> run_on_data(const Mesh& mesh, bool gaps_only) {
-    if (!gaps_only) check_data(mesh);
+  std::vector<Fault> run_on_data(const Mesh& mesh) {
+    check_data(mesh);
     if (faults_.empty()) check_gaps(mesh);
     return std::move(faults_);
   }
+
+  /// What it has taken so far.
+  double steps() const { return steps_; }
 
  private:
   void fault(std::string where, std::string detail) {
@@ -47,9 +57,10 @@ class Validation {
 
   void check_boundary() {
     const std::vector<std::string> parts = part_names(problem_.domain);
+    const std::set<std::string_view> known(parts.begin(), parts.end());
     bool held = false;
     for (const auto& [part, condition] : problem_.boundary) {
-      if (std::ranges::find(parts, part) == parts.end())
+      if (!known.contains(part))
         fault("/boundary/" + part, "the domain has no part of this name; it has " + listed(parts));
       held = held || std::holds_alternative<Fixed>(condition) || std::holds_alternative<Contact>(condition) ||
              std::holds_alternative<Roller>(condition);
@@ -81,18 +92,42 @@ class Validation {
   /// Evaluates every field where a coarse mesh of the domain needs it; the solve does the same on the real
   /// mesh.
   void check_fields(const Mesh& mesh) {
-    attempt([&] { sample(mesh, [&](const Point& x) { compliance_at(problem_.material, x); }); });
+    attempt([&] {
+      sample(mesh, fields_of(problem_.material),
+             [&](const Point& x) { compliance_at(problem_.material, x); });
+    });
     check_data(mesh);
     if (faults_.empty()) check_gaps(mesh);
   }
 
   void check_data(const Mesh& mesh) {
-    for (int c = 0; c < problem_.body.size(); ++c)
-      attempt([&] { sample(mesh, [&](const Point& x) { problem_.body(c, x); }); });
-    for (const auto& [part, condition] : problem_.boundary) {
-      Problem alone = problem_;
-      alone.boundary = {{part, condition}};
-      attempt([&] { TraceSpace(alone, mesh, make_clearance_space(alone, mesh)); });
+    for (const Field& component : problem_.body.fields())
+      attempt([&] { sample(mesh, {&component}, [&](const Point& x) { component(x); }); });
+    for (const BoundaryPart& part : mesh.boundary) {
+      const auto condition = problem_.boundary.find(part.name);
+      if (condition != problem_.boundary.end())
+        attempt([&] { check_condition(mesh, part, condition->second); });
+    }
+  }
+
+  /// Of a gap that the ends of edges do not need they are not asked.
+  void check_condition(const Mesh& mesh, const BoundaryPart& part, const Condition& condition) {
+    const bool with_ends =
+        std::holds_alternative<Fixed>(condition) ||
+        (std::holds_alternative<Contact>(condition) && problem_.scheme == Scheme::conforming);
+    const std::vector<const Field*> fields = fields_of(condition);
+    const auto* contact = std::get_if<Contact>(&condition);
+    const std::size_t stride = stride_for(part.edges.size() * EdgeRule::size, fields);
+    for (std::size_t i = 0; i < part.edges.size(); i += stride) {
+      const int edge = part.edges[i];
+      if (contact) contact_direction(mesh, part, *contact, edge);
+      const auto evaluate = [&](double s) {
+        const auto [x, normal] = mesh.on_boundary(edge, s);
+        for (const Field* field : fields) (*field)(x, normal);
+      };
+      steps_ += steps_of(fields) * EdgeRule::size;
+      std::ranges::for_each(edge_rule().points, evaluate);
+      if (with_ends) evaluate(0), evaluate(1);
     }
   }
 
@@ -109,16 +144,29 @@ class Validation {
     }
   }
 
+  /// Where formulas are long and places many, only each so many is asked.
+  static std::size_t stride_for(std::size_t places, const std::vector<const Field*>& fields) {
+    constexpr double most_steps = 1e6;
+    return 1 + static_cast<std::size_t>(static_cast<double>(places) * steps_of(fields) / most_steps);
+  }
+
   template <typename Evaluate>
-  void sample(const Mesh& mesh, const Evaluate& evaluate) {
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-      const AffineMap map(mesh.corners(t));
+  void sample(const Mesh& mesh, const std::vector<const Field*>& fields, const Evaluate& evaluate) {
+    if (std::ranges::all_of(fields, &Field::is_constant)) {
+      evaluate(mesh.centroid(0));
+      return;
+    }
+    const std::size_t stride = stride_for(mesh.triangles.size() * TriangleRule::size, fields);
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) {
+      const AffineMap map(mesh.corners(static_cast<int>(t)));
       for (const Point& reference : triangle_rule().points) evaluate(map(reference));
+      steps_ += steps_of(fields) * TriangleRule::size;
     }
   }
 
   const Problem& problem_;
   std::vector<Fault> faults_;
+  double steps_ = 0;
 };
 
 }  // namespace
@@ -141,21 +189,30 @@ std::vector<Fault> validate(const Problem& problem, const Settings& settings) {
 }
 
 std::vector<Fault> validate(const Problem& problem, const std::vector<Variation>& sweep) {
+  return faults_of_sweep(problem, sweep, std::numeric_limits<double>::infinity(), nullptr);
+}
+
+std::vector<Fault> faults_of_sweep(const Problem& problem, const std::vector<Variation>& sweep,
+                                   double most_steps, Progress* progress) {
   std::vector<Fault> faults;
   if (sweep.empty()) return faults;
   if (problem.mesh.adaptive)
-    return {{"/sweep", "an adaptive mesh depends on the loads and gaps, and a sweep has one mesh for all: leave "
-                       "mesh.adaptive out, or solve the entries one by one"}};
-  const Mesh mesh = make_coarse_mesh(problem.domain);
+    return {{"/sweep",
+             "an adaptive mesh depends on the loads and gaps, and a sweep has one mesh for all: leave "
+             "mesh.adaptive out, or solve the entries one by one"}};
+  const std::optional<Mesh> mesh = make_coarse_mesh(problem.domain);
+  if (!mesh) return faults;
   Problem varied = problem;
-  for (std::size_t i = 0; i < sweep.size(); ++i) {
+  for (std::size_t i = 0; i < sweep.size() && most_steps > 0; ++i) {
+    if (progress) progress->check();
     apply(sweep[i], varied);
-    const bool other_gaps_only = !problem.load_key.empty() && varied.load_key == problem.load_key;
+    Validation validation(varied);
     const std::string place = "/sweep/" + std::to_string(i);
-    for (Fault& fault : Validation(varied).run_on_data(mesh, other_gaps_only)) {
+    for (Fault& fault : validation.run_on_data(*mesh)) {
       if (!fault.where.starts_with(place)) fault.where = place + fault.where;
       faults.push_back(std::move(fault));
     }
+    most_steps -= validation.steps();
   }
   return faults;
 }

@@ -32,6 +32,19 @@ std::string read_body(const Request& request, std::size_t max_bytes) {
            " Send it as application/json or application/cbor: curl -H 'Content-Type: application/json'."});
 }
 
+/// A mesh of the client's own may be so large that to read it takes some tenths of a second and a hundred
+/// megabytes: one at a time.
+std::shared_ptr<void> place_to_read(Service& service, const std::string& text) {
+  constexpr std::size_t large = 1 << 20;
+  if (text.size() <= large) return nullptr;
+  if (std::shared_ptr<void> place = service.large_bodies.take()) return place;
+  throw HttpError(503,
+                  {"reading-another", "Another large problem is being read",
+                   "Problems of more than " + std::to_string(large) +
+                       " bytes are read one at a time. Send it again in a second."},
+                  {{"Retry-After", "1"}});
+}
+
 void require_few_unknowns(const Intake& intake, const Limits& limits) {
   const std::int64_t unknowns = intake.estimate.unknowns.stress;
   if (unknowns <= limits.max_unknowns) return;
@@ -92,9 +105,11 @@ double Intake::memory() const {
   return predicted_memory(estimate, runs);
 }
 
-Intake take_in(const Request& request, const Limits& limits) {
+Intake take_in(Service& service, const Request& request) {
+  const Limits& limits = service.limits;
   Intake intake;
   intake.text = read_body(request, limits.max_body_bytes);
+  const std::shared_ptr<void> place = place_to_read(service, intake.text);
   intake.request = api::parse_request(intake.text);
   intake.estimate = estimate(intake.request.problem);
   require_few_unknowns(intake, limits);
@@ -106,8 +121,8 @@ Intake take_in(const Request& request, const Limits& limits) {
   return intake;
 }
 
-Intake take_in_study(const Request& request, const Limits& limits) {
-  Intake intake = take_in(request, limits);
+Intake take_in_study(Service& service, const Request& request) {
+  Intake intake = take_in(service, request);
   if (!intake.request.study)
     throw InvalidProblem(std::vector<Fault>{
         {"/study", "is missing; it gives the meshes and schemes to solve the problem by"}});

@@ -14,7 +14,7 @@ namespace signorini::server {
 
 Response validate_problem(Service& service, const Request& request) {
   allow_only(request.query, {});
-  const Intake intake = take_in(request, service.limits);
+  const Intake intake = take_in(service, request);
   require_rest(intake.request.problem);
   return document_response(request, 200,
                            [estimate = intake.estimate, runs = intake.runs](api::DocumentWriter& out) {

@@ -154,12 +154,13 @@ Response answer(Service& service, const Request& request, std::optional<Job> job
   }
   const std::string location = link_to(job->id);
   const bool ended = waited && has_ended(job->status);
-  Response response = ended && job->verdict.summary
-                          ? result_response(request,
-                                           picks_summary_alone(request) ? with_summary(std::move(*job))
-                                                                        : with_result(service, std::move(*job)),
-                                           fields)
-                          : status_response(service, request, ended ? 200 : 202, std::move(*job));
+  Response response =
+      ended && job->verdict.summary
+          ? result_response(request,
+                            picks_summary_alone(request) ? with_summary(std::move(*job))
+                                                         : with_result(service, std::move(*job)),
+                            fields)
+          : status_response(service, request, ended ? 200 : 202, std::move(*job));
   response.headers.emplace_back("Location", location);
   return response;
 }
@@ -216,12 +217,12 @@ ListQuery list_query(const Request& request) {
 
 /// Takes a problem in by one of the functions of intake.hpp, queues it and answers.
 Response accept(Service& service, const Request& request,
-                Intake (*take)(const Request& request, const Limits& limits)) {
+                Intake (*take)(Service& service, const Request& request)) {
   allow_only(request.query, {"wait", "cancel", "fields"});
   const api::ResultFields fields = fields_of(request);
   const std::optional<Wait> wait = wait_of(request);
   const std::optional<std::string> key = idempotency_key(request);
-  Intake intake = take(request, service.limits);
+  Intake intake = take(service, request);
   require_available(fields, components(intake.request.problem.material));
   const std::string id = submit(service, request, std::move(intake), key);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "fem/contact_direction.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
 
@@ -62,19 +63,6 @@ class Builder {
   ClearanceSpace take() { return std::move(space_); }
 
  private:
-  Vector direction_on(int part, const Contact& contact, int edge) const {
-    const Vector normal = mesh_.outward_normal(edge), direction = contact.unit_direction(normal);
-    constexpr double rounding = 1e-9;
-    if (!(direction.dot(normal) > rounding)) {
-      const Point middle = (mesh_.points[mesh_.edges[edge][0]] + mesh_.points[mesh_.edges[edge][1]]) / 2;
-      throw InvalidProblem(
-          {{"/boundary/" + mesh_.boundary[part].name + "/direction",
-            "must point out of the body, from it to the foundation; at " + to_string(middle) +
-                " it does not: turn it, or give the edges on that side another condition"}});
-    }
-    return direction;
-  }
-
   /// What rounds the coordinates of short edges does not turn the direction where the part runs on straight.
   Vector straightened(Vector direction, const std::array<int, 2>& way) {
     for (const int node : way) {
@@ -96,7 +84,8 @@ class Builder {
     };
     const auto gap = [&](double s) { return std::min(true_gap(s), reach_); };
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
-    ContactEdge contact{edge, {}, {}, straightened(direction_on(part, condition, edge), way)};
+    ContactEdge contact{
+        edge, {}, {}, straightened(contact_direction(mesh_, mesh_.boundary[part], condition, edge), way)};
     if (order_ == 0)
       contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
     else

@@ -5,6 +5,8 @@
 
 namespace signorini {
 
+class Progress;
+
 /// A mesh on which the pair of spaces for elasticity is stable: the given one, or where it is not, one with
 /// the triangles halved that make it so, and a note that says so.
 ///
@@ -22,6 +24,8 @@ namespace signorini {
 /// `conforming`: P1 traces see the ends of each edge, and curls of P2 vectors control ∇γ by the Taylor–Hood
 /// pair, which is stable from three triangles on (Boffi 1994). A body of one or two triangles has too few
 /// edges, unless enough of them are held.
-Mesh stabilized(const Problem& problem, Mesh mesh);
+///
+/// Throws what a Progress throws, if there is one.
+Mesh stabilized(const Problem& problem, Mesh mesh, Progress* progress = nullptr);
 
 }  // namespace signorini

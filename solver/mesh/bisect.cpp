@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/make_mesh.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/upright.hpp"
 
@@ -49,13 +50,14 @@ class Bisection {
 
   const std::vector<int>& parents() const { return parents_; }
 
-  Mesh mesh() {
+  Mesh mesh(Progress* progress) {
     for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+      if (progress) progress->check_in(t);
       cut(t);
       parents_.resize(triangles_.size(), t);
     }
     Mesh mesh = make_mesh(std::move(points_), std::move(triangles_), names(mesh_.boundary), segments(),
-                          mesh_.circles);
+                          mesh_.circles, progress);
     mesh.notes = mesh_.notes;
     return mesh;
   }
@@ -118,15 +120,15 @@ Mesh with_longest_edges_first(Mesh mesh) {
   return mesh;
 }
 
-Mesh bisect(const Mesh& mesh, const std::vector<int>& marked) {
-  Mesh finer = Bisection(mesh, marked, Middle::on_arc).mesh();
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, Progress* progress) {
+  Mesh finer = Bisection(mesh, marked, Middle::on_arc).mesh(progress);
   require_upright(finer);
   return finer;
 }
 
-Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents) {
+Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, std::vector<int>& parents, Progress* progress) {
   Bisection bisection(mesh, marked, Middle::on_chord);
-  Mesh finer = bisection.mesh();
+  Mesh finer = bisection.mesh(progress);
   parents = bisection.parents();
   return finer;
 }

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 
 #include "mesh/import.hpp"
+#include "mesh/mesh_sizes.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
+#include "mesh/rings.hpp"
 
 namespace signorini {
 namespace {
@@ -28,9 +31,7 @@ struct Area {
 };
 
 /// What each kind of domain answers, written next to each other.
-struct Faults {
-  const MeshRequest& request;
-
+struct FaultsOfShape {
   std::vector<Fault> operator()(const Rectangle& rectangle) const {
     std::vector<Fault> faults;
     if (!(rectangle.size.minCoeff() > 0) || !rectangle.size.allFinite())
@@ -42,6 +43,27 @@ struct Faults {
       faults.push_back(
           {"/domain",
            "lies so far from the origin that its points cannot be told apart: move the origin closer"});
+    return faults;
+  }
+
+  std::vector<Fault> operator()(const Polygon& polygon) const { return validate(polygon); }
+
+  std::vector<Fault> operator()(const MeshData& data) const {
+    if (static_cast<std::int64_t>(data.triangles.size()) > few_triangles) return {};
+    try {
+      import_mesh(data);
+    } catch (const InvalidProblem& invalid) {
+      return invalid.faults();
+    }
+    return {};
+  }
+};
+
+struct FaultsOfRequest {
+  const MeshRequest& request;
+
+  std::vector<Fault> operator()(const Rectangle&) const {
+    std::vector<Fault> faults;
     if (const auto* squares = std::get_if<Divisions>(&request.fineness)) {
       if (squares->x < 1 || squares->y < 1)
         faults.push_back({"/mesh/divisions", "must be two positive whole numbers"});
@@ -53,43 +75,30 @@ struct Faults {
   }
 
   std::vector<Fault> operator()(const Polygon& polygon) const {
-    if (auto faults = validate(polygon); !faults.empty()) return faults;
     const auto* edge = std::get_if<LargestEdge>(&request.fineness);
     if (!edge) return {{"/mesh", "a polygon is meshed by size (the largest edge), not by divisions"}};
     return validate(polygon, edge->length, request.sizes);
   }
 
-  std::vector<Fault> operator()(const MeshData& data) const {
-    try {
-      import_mesh(data);
-    } catch (const InvalidProblem& invalid) {
-      return invalid.faults();
-    }
-    return {};
-  }
+  std::vector<Fault> operator()(const MeshData&) const { return {}; }
 };
 
 struct Make {
   const MeshRequest& request;
+  int max_triangles;
+  Progress* progress;
 
   Mesh operator()(const Rectangle& rectangle) const {
-    return rectangle_mesh(rectangle, divisions(rectangle, request), request.pattern);
+    return rectangle_mesh(rectangle, divisions(rectangle, request), request.pattern, progress);
   }
   Mesh operator()(const Polygon& polygon) const {
-    return polygon_mesh(polygon, std::get<LargestEdge>(request.fineness).length, request.sizes);
+    return polygon_mesh(polygon, std::get<LargestEdge>(request.fineness).length, request.sizes, max_triangles,
+                        progress);
   }
-  Mesh operator()(const MeshData& data) const { return import_mesh(data); }
+  Mesh operator()(const MeshData& data) const { return import_mesh(data, progress); }
 };
 
-struct MakeCoarse {
-  Mesh operator()(const Rectangle& rectangle) const {
-    return rectangle_mesh(rectangle, {4, 4}, Pattern::crossed);
-  }
-  Mesh operator()(const Polygon& polygon) const {
-    return polygon_mesh(polygon, coarse_edge(polygon).length);
-  }
-  Mesh operator()(const MeshData& data) const { return import_mesh(data); }
-};
+constexpr int most_triangles = 20'000'000;
 
 }  // namespace
 
@@ -105,19 +114,44 @@ LargestEdge coarse_edge(const Domain& domain) {
   return {std::sqrt(std::visit(Area{}, domain)) / 4};
 }
 
-std::vector<Fault> validate(const Domain& domain, const MeshRequest& request) {
-  std::vector<Fault> faults = std::visit(Faults{request}, domain);
+std::vector<Fault> validate_request(const Domain& domain, const MeshRequest& request) {
+  std::vector<Fault> faults = std::visit(FaultsOfRequest{request}, domain);
   if (request.adaptive) std::ranges::copy(validate(*request.adaptive), std::back_inserter(faults));
   return faults;
 }
 
-Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request) {
-  Mesh mesh = std::visit(Make{request}, domain);
-  return request.refine > 0 ? refine(mesh, request.refine) : mesh;
+std::vector<Fault> validate(const Domain& domain, const MeshRequest& request) {
+  std::vector<Fault> faults = std::visit(FaultsOfShape{}, domain);
+  // Without a shape there is no size to compare those of a polygon with.
+  if (faults.empty() || !std::holds_alternative<Polygon>(domain))
+    std::ranges::copy(validate_request(domain, request), std::back_inserter(faults));
+  return faults;
 }
 
-Mesh make_coarse_mesh(const Domain& domain) {
-  return std::visit(MakeCoarse{}, domain);
+Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request, Progress* progress) {
+  Mesh mesh = std::visit(Make{request, most_triangles, progress}, domain);
+  return request.refine > 0 ? refine(mesh, request.refine, most_triangles, progress) : mesh;
+}
+
+std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request) {
+  // An edge of a polygon has a triangle to itself; what is so large need not be looked at.
+  const auto* polygon = std::get_if<Polygon>(&domain);
+  if (polygon && static_cast<std::int64_t>(Rings(*polygon).points.size()) > few_triangles)
+    return std::nullopt;
+  if (PredictedSizes(domain)(request).triangles > few_triangles) return std::nullopt;
+  try {
+    return std::visit(Make{request, 4 * few_triangles, nullptr}, domain);
+  } catch (const TooManyTriangles&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Mesh> make_coarse_mesh(const Domain& domain) {
+  if (std::holds_alternative<Rectangle>(domain))
+    return make_small_mesh(domain, {Divisions{4, 4}, Pattern::crossed});
+  if (std::holds_alternative<Polygon>(domain))
+    return make_small_mesh(domain, MeshRequest(coarse_edge(domain)));
+  return make_small_mesh(domain, {});
 }
 
 }  // namespace signorini

@@ -8,6 +8,7 @@
 #include "mesh/chains.hpp"
 #include "mesh/edge_table.hpp"
 #include "mesh/fault_list.hpp"
+#include "mesh/make_mesh.hpp"
 #include "mesh/overlaps.hpp"
 #include "mesh/segments.hpp"
 #include "mesh/unit_frame.hpp"
@@ -38,7 +39,8 @@ std::string part_pointer(const std::string& name) {
 /// Checks the data step by step, each of which relies on the ones before it, and builds the mesh.
 class Import {
  public:
-  explicit Import(const MeshData& data) : data_(data), triangles_(data.triangles) {}
+  Import(const MeshData& data, Progress* progress)
+      : data_(data), progress_(progress), triangles_(data.triangles) {}
 
   Mesh mesh() {
     check_names();
@@ -55,15 +57,17 @@ class Import {
     const EdgeTable edges(triangles_);
     check_edges(edges);
     throw_if_any();
-    faults_ = faults_of_overlap(edges, data_.points, scaled_);
+    faults_ = faults_of_overlap(edges, data_.points, scaled_, progress_);
     throw_if_any();
-    Mesh mesh = make_mesh(data_.points, triangles_, names_, segments(edges));
+    Mesh mesh = make_mesh(data_.points, triangles_, names_, segments(edges), {}, progress_);
     mesh.notes = data_.notes;
     return mesh;
   }
 
  private:
+  /// After each step, none of which takes a tenth of a second for the largest mesh that a request can hold.
   void throw_if_any() const {
+    if (progress_) progress_->check();
     if (!faults_.empty()) throw InvalidProblem(faults_);
   }
 
@@ -252,6 +256,7 @@ class Import {
   }
 
   const MeshData& data_;
+  Progress* const progress_;
   std::vector<std::array<int, 3>> triangles_;  // counter-clockwise, once checked
   std::vector<Point> scaled_;                  // in units in which the domain's extent is 1
   std::vector<std::string> names_;
@@ -260,8 +265,8 @@ class Import {
 
 }  // namespace
 
-Mesh import_mesh(const MeshData& data) {
-  return Import(data).mesh();
+Mesh import_mesh(const MeshData& data, Progress* progress) {
+  return Import(data, progress).mesh();
 }
 
 }  // namespace signorini

@@ -5,6 +5,8 @@
 
 namespace signorini {
 
+class Progress;
+
 /// The mesh of the data, its points and triangles in the same order. Triangles that run clockwise are
 /// turned; the edges of a part run with the domain on their left, in chains where they form some.
 ///
@@ -13,7 +15,8 @@ namespace signorini {
 /// not finite, repeat another or belong to no triangle; triangles that are degenerate (area below 1e-8 of
 /// the squared longest edge), repeated or overlap; edges of three triangles; hanging nodes; names that are
 /// empty, repeated or `all`; edges in a part that are not on the boundary, in two parts or in none.
-/// Points closer to each other or to an edge than 1e-9 of the edge's length count as touching.
-Mesh import_mesh(const MeshData& data);
+/// Points closer to each other or to an edge than 1e-9 of the edge's length count as touching. Throws what a
+/// Progress throws, if there is one.
+Mesh import_mesh(const MeshData& data, Progress* progress = nullptr);
 
 }  // namespace signorini

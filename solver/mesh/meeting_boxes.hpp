@@ -17,21 +17,48 @@ inline Box box_around(const Segment& segment, double margin) {
   return {segment[0].cwiseMin(segment[1]).array() - margin, segment[0].cwiseMax(segment[1]).array() + margin};
 }
 
+inline Box box_around_both(const Box& one, const Box& other) {
+  return {one.low.cwiseMin(other.low), one.high.cwiseMax(other.high)};
+}
+
+inline bool is_within(const Point& x, const Box& box) {
+  return (x.array() >= box.low.array()).all() && (x.array() <= box.high.array()).all();
+}
+
+/// The number of pairs of boxes that have a coordinate (0 or 1) in common.
+inline std::size_t pairs_sharing(const std::vector<Box>& boxes, int coordinate) {
+  std::vector<double> low, high;
+  for (const Box& box : boxes) {
+    low.push_back(box.low[coordinate]);
+    high.push_back(box.high[coordinate]);
+  }
+  std::ranges::sort(low);
+  std::ranges::sort(high);
+  std::size_t apart = 0, ended = 0;
+  for (const double begin : low) {
+    while (high[ended] < begin) ++ended;
+    apart += ended;
+  }
+  return boxes.size() * (boxes.size() - 1) / 2 - apart;
+}
+
 /// Calls visit(i, j) for every pair of boxes that meet, until it returns false.
 ///
-/// A sweep along x: fast where few boxes share an x, quadratic where most of them do.
+/// A sweep along x, or along y where far fewer pairs share a y: quadratic only where most share both.
 template <typename Visit>
 void for_each_meeting_pair(const std::vector<Box>& boxes, Visit visit) {
-  std::vector<int> by_left(boxes.size());
-  std::iota(by_left.begin(), by_left.end(), 0);
-  std::ranges::sort(by_left, {}, [&](int i) { return std::pair(boxes[i].low.x(), i); });
-  for (std::size_t k = 0; k < by_left.size(); ++k) {
-    const Box& box = boxes[by_left[k]];
-    for (std::size_t l = k + 1; l < by_left.size(); ++l) {
-      const Box& other = boxes[by_left[l]];
-      if (other.low.x() > box.high.x()) break;
-      const bool meet = other.low.y() <= box.high.y() && box.low.y() <= other.high.y();
-      if (meet && !visit(by_left[k], by_left[l])) return;
+  if (boxes.empty()) return;
+  const int along = pairs_sharing(boxes, 0) > 8 * pairs_sharing(boxes, 1) ? 1 : 0, across = 1 - along;
+  std::vector<int> by_begin(boxes.size());
+  std::iota(by_begin.begin(), by_begin.end(), 0);
+  std::ranges::sort(by_begin, {}, [&](int i) { return std::pair(boxes[i].low[along], i); });
+  for (std::size_t k = 0; k < by_begin.size(); ++k) {
+    const Box& box = boxes[by_begin[k]];
+    for (std::size_t l = k + 1; l < by_begin.size(); ++l) {
+      const Box& other = boxes[by_begin[l]];
+      if (other.low[along] > box.high[along]) break;
+      const bool meet = other.low[across] <= box.high[across] && box.low[across] <= other.high[across];
+      if (meet && !visit(by_begin[k], by_begin[l])) return;
     }
   }
 }

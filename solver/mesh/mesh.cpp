@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "mesh/make_mesh.hpp"
+
 namespace signorini {
 namespace {
 
@@ -18,15 +20,17 @@ struct HalfEdge {
 /// Half-edges sorted into one bucket for each smaller point; a bucket holds about six.
 class HalfEdges {
  public:
-  explicit HalfEdges(const Mesh& mesh) : begin_(mesh.points.size() + 1, 0) {
-    for_each(mesh, [&](int near, const HalfEdge&) { ++begin_[near + 1]; });
+  HalfEdges(const Mesh& mesh, Progress* progress) : begin_(mesh.points.size() + 1, 0) {
+    for_each(mesh, progress, [&](int near, const HalfEdge&) { ++begin_[near + 1]; });
     for (std::size_t p = 1; p < begin_.size(); ++p) begin_[p] += begin_[p - 1];
     entries_.resize(3 * mesh.triangles.size());
     std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for_each(mesh, [&](int near, const HalfEdge& half) { entries_[next[near]++] = half; });
-    for (std::size_t p = 0; p + 1 < begin_.size(); ++p)
+    for_each(mesh, progress, [&](int near, const HalfEdge& half) { entries_[next[near]++] = half; });
+    for (int p = 0; p + 1 < static_cast<int>(begin_.size()); ++p) {
+      if (progress) progress->check_in(p);
       std::stable_sort(entries_.begin() + begin_[p], entries_.begin() + begin_[p + 1],
                        [](const HalfEdge& a, const HalfEdge& b) { return a.far_point < b.far_point; });
+    }
   }
 
   int begin(int near) const { return begin_[near]; }
@@ -35,21 +39,24 @@ class HalfEdges {
 
  private:
   template <typename Visit>
-  static void for_each(const Mesh& mesh, Visit visit) {
-    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+  static void for_each(const Mesh& mesh, Progress* progress, Visit visit) {
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+      if (progress) progress->check_in(t);
       for (int e = 0; e < 3; ++e) {
         const auto [a, b] = std::minmax(mesh.triangles[t][(e + 1) % 3], mesh.triangles[t][(e + 2) % 3]);
         visit(a, HalfEdge{b, t, e});
       }
+    }
   }
 
   std::vector<int> begin_;
   std::vector<HalfEdge> entries_;
 };
 
-void number_edges(Mesh& mesh, const HalfEdges& halves) {
+void number_edges(Mesh& mesh, const HalfEdges& halves, Progress* progress) {
   mesh.triangle_edges.resize(mesh.triangles.size());
-  for (int near = 0; near < static_cast<int>(mesh.points.size()); ++near)
+  for (int near = 0; near < static_cast<int>(mesh.points.size()); ++near) {
+    if (progress) progress->check_in(near);
     for (int i = halves.begin(near); i < halves.end(near); ++i) {
       const HalfEdge& half = halves[i];
       const bool second_side = i > halves.begin(near) && halves[i - 1].far_point == half.far_point;
@@ -62,6 +69,7 @@ void number_edges(Mesh& mesh, const HalfEdges& halves) {
       }
       mesh.triangle_edges[half.triangle][half.local] = static_cast<int>(mesh.edges.size()) - 1;
     }
+  }
 }
 
 int find_edge(const Mesh& mesh, std::array<int, 2> ends) {
@@ -149,11 +157,11 @@ std::size_t Mesh::bytes() const {
 
 Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triangles,
                const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments,
-               std::vector<Circle> circles) {
+               std::vector<Circle> circles, Progress* progress) {
   Mesh mesh;
   mesh.points = std::move(points);
   mesh.triangles = std::move(triangles);
-  number_edges(mesh, HalfEdges(mesh));
+  number_edges(mesh, HalfEdges(mesh, progress), progress);
   for (const std::string& name : part_names) mesh.boundary.push_back({name, {}});
   mesh.circles = std::move(circles);
   if (!mesh.circles.empty()) mesh.edge_circles.assign(mesh.edges.size(), -1);
@@ -163,6 +171,13 @@ Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triang
     if (segment.circle >= 0) mesh.edge_circles[edge] = segment.circle;
   }
   return mesh;
+}
+
+Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triangles,
+               const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments,
+               std::vector<Circle> circles) {
+  return make_mesh(std::move(points), std::move(triangles), part_names, segments, std::move(circles),
+                   nullptr);
 }
 
 }  // namespace signorini

@@ -17,6 +17,25 @@ constexpr double triangles_per_edge = 2.5;
 /// Pairs of edges closer than they are long; more of them are an intricate domain indeed.
 constexpr std::size_t most_pairs = 5'000'000;
 
+Segment segment_of(const Rings& rings, int edge) {
+  return {rings.points[edge], rings.points[rings.next(edge)]};
+}
+
+double length_of(const Segment& segment) {
+  return (segment[1] - segment[0]).norm();
+}
+
+/// Calls visit(i, j) for every pair of edges closer to each other than they are long, until it returns false.
+template <typename Visit>
+void for_each_near_pair(const Rings& unit, const Visit& visit) {
+  std::vector<Box> boxes;
+  for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge) {
+    const Segment ends = segment_of(unit, edge);
+    boxes.push_back(box_around(ends, length_of(ends) / 2));
+  }
+  for_each_meeting_pair(boxes, visit);
+}
+
 class Count {
  public:
   Count(const Rings& unit, double enough) : rings_(unit), enough_(enough), near_(unit.points.size()) {
@@ -46,20 +65,13 @@ class Count {
     double begin, end;
   };
 
-  Segment segment(int edge) const { return {rings_.points[edge], rings_.points[rings_.next(edge)]}; }
-
-  double length(int edge) const {
-    const Segment ends = segment(edge);
-    return (ends[1] - ends[0]).norm();
-  }
+  Segment segment(int edge) const { return segment_of(rings_, edge); }
+  double length(int edge) const { return length_of(segment(edge)); }
 
   /// The other edges closer to an edge than it is long.
   bool find_pairs() {
-    std::vector<Box> boxes;
-    for (int edge = 0; edge < static_cast<int>(near_.size()); ++edge)
-      boxes.push_back(box_around(segment(edge), length(edge) / 2));
     std::size_t pairs = 0;
-    for_each_meeting_pair(boxes, [&](int i, int j) {
+    for_each_near_pair(rings_, [&](int i, int j) {
       near_[i].push_back(j);
       near_[j].push_back(i);
       last_pair_ = {i, j};
@@ -119,6 +131,16 @@ class Count {
 };
 
 }  // namespace
+
+std::optional<std::array<int, 2>> pair_of_near_edges(const Rings& unit, std::size_t most) {
+  std::size_t pairs = 0;
+  std::optional<std::array<int, 2>> last;
+  for_each_near_pair(unit, [&](int i, int j) {
+    if (++pairs > most) last = {i, j};
+    return !last;
+  });
+  return last;
+}
 
 NarrowPlaces narrow_places(const Rings& unit, double enough) {
   return Count(unit, enough).run();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "mesh/rings.hpp"
 
 namespace signorini {
@@ -14,6 +17,10 @@ struct NarrowPlaces {
   int edge = 0;      ///< the one with the most of them
   int opposite = 0;  ///< the one closest to it
 };
+
+/// A pair of edges closer to each other than they are long if there are more such pairs than `most`; nothing
+/// if not. For any rings in the unit frame.
+std::optional<std::array<int, 2>> pair_of_near_edges(const Rings& unit, std::size_t most);
 
 /// For rings in the unit frame that neither touch nor cross. Stops counting at `enough`.
 NarrowPlaces narrow_places(const Rings& unit, double enough);

@@ -7,6 +7,7 @@
 #include "mesh/fault_list.hpp"
 #include "mesh/meeting_boxes.hpp"
 #include "mesh/segments.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 namespace {
@@ -31,12 +32,12 @@ class Boundary {
     rounding_ = 4 * std::numeric_limits<double>::epsilon() * farthest;
   }
 
-  std::vector<Fault> faults() {
-    find_contacts();
+  std::vector<Fault> faults(Progress* progress) {
+    find_contacts(progress);
     std::vector<Fault> all;
     const bool simple = touching_.is_empty() && overlapping_.is_empty();
     std::move(touching_).append_to(all);
-    if (simple) find_covered_edges();
+    if (simple) find_covered_edges(progress);
     std::move(overlapping_).append_to(all);
     return all;
   }
@@ -55,11 +56,13 @@ class Boundary {
            std::to_string(edges_[edge].triangle);
   }
 
-  void find_contacts() {
+  void find_contacts(Progress* progress) {
     std::vector<Box> boxes;
     for (int e = 0; e < static_cast<int>(segments_.size()); ++e)
       boxes.push_back(box_around(segments_[e], tolerance(e)));
+    int pairs = 0;
     for_each_meeting_pair(boxes, [&](int i, int j) {
+      if (progress) progress->check_in(pairs++);
       const bool touch = touches(i, j) || touches(j, i);
       if (!touch && !share_a_point(i, j) && cross(segments_[i], segments_[j]))
         add_overlap(i, "overlaps triangle " + std::to_string(edges_[j].triangle) + ": the edges " + name(i) +
@@ -100,24 +103,42 @@ class Boundary {
   }
 
   /// One edge tells for all that follow it without a fork.
-  void find_covered_edges() {
-    for (const int edge : longest_of_chains()) {
+  void find_covered_edges(Progress* progress) {
+    const std::vector<int> chosen = longest_of_chains();
+    std::vector<int> covered(edges_.size(), 0);
+    for (const bool steep : {true, false}) count_coverings(chosen, steep, covered, progress);
+    for (const int edge : chosen) {
       if (overlapping_.is_full()) return;
-      if (times_covered(edge) != 1)
+      if (covered[edge] != 1)
         add_overlap(edge, "overlaps another triangle: its edge " + name(edge) + " lies inside the mesh");
     }
   }
 
-  /// How many triangles cover the places just left of the edge's midpoint.
-  int times_covered(int edge) const {
+  bool is_steep(int edge) const {
     const Vector along = segments_[edge][1] - segments_[edge][0];
-    const bool steep = std::abs(along.y()) > std::abs(along.x());
+    return std::abs(along.y()) > std::abs(along.x());
+  }
+
+  /// How many triangles cover the left of each of the chosen edges that are steep, or are not: these are
+  /// turned.
+  void count_coverings(const std::vector<int>& chosen, bool steep, std::vector<int>& covered,
+                       Progress* progress) const {
     const std::vector<Segment>& all = steep ? segments_ : turned_;
-    const Segment& own = all[edge];
-    const Point middle = 0.5 * (own[0] + own[1]);
-    // The ray to the right of the midpoint begins on the right of an edge that rises, left of one that falls.
-    const int behind = winding_number(middle, all) - winding_number(middle, {own});
-    return own[1].y() > own[0].y() ? behind + 1 : behind;
+    std::vector<int> asked;
+    std::vector<Point> middles;
+    for (const int edge : chosen)
+      if (is_steep(edge) == steep) {
+        asked.push_back(edge);
+        middles.push_back(0.5 * (all[edge][0] + all[edge][1]));
+      }
+    const std::vector<int> turns = winding_numbers(middles, all, progress);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      const Segment& own = all[asked[i]];
+      // The ray to the right of the midpoint begins on the right of an edge that rises, left of one that
+      // falls.
+      const int behind = turns[i] - winding_number(middles[i], {own});
+      covered[asked[i]] = own[1].y() > own[0].y() ? behind + 1 : behind;
+    }
   }
 
   std::vector<int> longest_of_chains() const {
@@ -159,8 +180,8 @@ class Boundary {
 }  // namespace
 
 std::vector<Fault> faults_of_overlap(const EdgeTable& edges, const std::vector<Point>& given,
-                                     const std::vector<Point>& scaled) {
-  return Boundary(edges, given, scaled).faults();
+                                     const std::vector<Point>& scaled, Progress* progress) {
+  return Boundary(edges, given, scaled).faults(progress);
 }
 
 }  // namespace signorini

@@ -5,10 +5,13 @@
 
 namespace signorini {
 
+class Progress;
+
 /// Hanging nodes, points that nearly coincide and overlapping triangles, for triangles that run
 /// counter-clockwise and whose inner edges have one triangle on each side. The points are given as they
-/// stand in messages, and in units in which the extent of the domain is about 1.
+/// stand in messages, and in units in which the extent of the domain is about 1. Throws what a Progress
+/// throws, if there is one.
 std::vector<Fault> faults_of_overlap(const EdgeTable& edges, const std::vector<Point>& given,
-                                     const std::vector<Point>& scaled);
+                                     const std::vector<Point>& scaled, Progress* progress);
 
 }  // namespace signorini

@@ -13,6 +13,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include "mesh/chains.hpp"
+#include "mesh/make_mesh.hpp"
 #include "mesh/rings.hpp"
 #include "mesh/segments.hpp"
 
@@ -155,10 +156,18 @@ void mark_domain(Triangulation& triangulation, const std::vector<Vertex>& vertic
     Mesher::propagate_marks(face_inside(triangulation, vertices, unit, hole), false);
 }
 
+std::string hole_name(std::size_t hole) {
+  return "hole" + std::to_string(hole);
+}
+
+std::string side_name(const Polygon& polygon, std::size_t edge) {
+  return polygon.sides.empty() ? "side" + std::to_string(edge) : polygon.sides[edge];
+}
+
 [[noreturn]] void refuse_size(int max_triangles) {
-  throw InvalidProblem({{"/mesh/size", "the mesh would have more than " + std::to_string(max_triangles) +
-                                           " triangles, which the sizes or narrow places of the domain "
-                                           "ask for; give larger sizes, or widen the narrow places"}});
+  throw TooManyTriangles({{"/mesh/size", "the mesh would have more than " + std::to_string(max_triangles) +
+                                             " triangles, which the sizes or narrow places of the domain "
+                                             "ask for; give larger sizes, or widen the narrow places"}});
 }
 
 /// Halves the chords that are longer than their places allow.
@@ -181,21 +190,15 @@ Rings halved_to_size(Rings rings, const SizeField& sizes, const UnitFrame& frame
   return rings;
 }
 
-void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles) {
+void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles, Progress* progress) {
   Mesher mesher(triangulation, Criteria(sizes));
   mesher.init(true);
   // By Euler's formula there are fewer triangles than twice the vertices, and hardly fewer in a fine mesh.
-  const auto most_vertices = static_cast<std::size_t>(max_triangles / 2);
-  while (mesher.try_one_step_refine_mesh())
-    if (triangulation.number_of_vertices() > most_vertices) refuse_size(max_triangles);
-}
-
-std::string hole_name(std::size_t hole) {
-  return "hole" + std::to_string(hole);
-}
-
-std::string side_name(const Polygon& polygon, std::size_t edge) {
-  return polygon.sides.empty() ? "side" + std::to_string(edge) : polygon.sides[edge];
+  const auto enough_vertices = static_cast<std::size_t>(max_triangles / 2);
+  for (int step = 0; mesher.try_one_step_refine_mesh(); ++step) {
+    if (progress) progress->check_in(step);
+    if (triangulation.number_of_vertices() > enough_vertices) refuse_size(max_triangles);
+  }
 }
 
 /// Reads the mesh out of the triangulation of the domain's rings.
@@ -205,11 +208,14 @@ std::string side_name(const Polygon& polygon, std::size_t edge) {
 class Extraction {
  public:
   Extraction(const Polygon& polygon, const Rings& rings, const UnitFrame& frame,
-             const Triangulation& triangulation)
+             const Triangulation& triangulation, Progress* progress)
       : polygon_(polygon), rings_(rings), frame_(frame) {
     points_ = rings.points;
-    for (const Face face : triangulation.finite_face_handles())
+    int seen = 0;
+    for (const Face face : triangulation.finite_face_handles()) {
+      if (progress) progress->check_in(seen++);
       if (face->is_in_domain()) take(face);
+    }
     on_edges_.resize(rings_.points.size());
     const std::vector<Point> as_cut = points_;
     follow_rings();
@@ -226,13 +232,13 @@ class Extraction {
   /// The rings with the points that their chords were cut at.
   Rings rings_as_cut() const { return rings_.with(on_edges_); }
 
-  Mesh mesh() && {
+  Mesh mesh(Progress* progress) && {
     const std::vector<std::string> names = part_names(polygon_);
     const auto edges = edges_of_parts(names);
     std::vector<BoundarySegment> segments;
     for (int part = 0; part < static_cast<int>(names.size()); ++part)
       for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part, circles_.at(edge[0])});
-    return make_mesh(std::move(points_), std::move(triangles_), names, segments, rings_.circles);
+    return make_mesh(std::move(points_), std::move(triangles_), names, segments, rings_.circles, progress);
   }
 
  private:
@@ -301,14 +307,10 @@ class Extraction {
     for (std::size_t i = 0; i < names.size(); ++i) parts[names[i]] = i;
     std::vector<std::vector<std::array<int, 2>>> edges(names.size());
     for (int edge = 0; edge < static_cast<int>(pieces_.size()); ++edge) {
-      auto& of_part = edges[parts.at(part_of(edge))];
+      auto& of_part = edges[parts.at(part_of(polygon_, rings_, edge))];
       of_part.insert(of_part.end(), pieces_[edge].begin(), pieces_[edge].end());
     }
     return edges;
-  }
-
-  std::string part_of(int edge) const {
-    return rings_.ring[edge] > 0 ? hole_name(rings_.ring[edge] - 1) : side_name(polygon_, rings_.side[edge]);
   }
 
   const Polygon& polygon_;
@@ -340,12 +342,16 @@ std::vector<std::string> part_names(const Polygon& polygon) {
   return names;
 }
 
+std::string part_of(const Polygon& polygon, const Rings& rings, int edge) {
+  return rings.ring[edge] > 0 ? hole_name(rings.ring[edge] - 1) : side_name(polygon, rings.side[edge]);
+}
+
 double area(const Polygon& polygon) {
   return domain_area(Rings(polygon));
 }
 
-Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes,
-                  int max_triangles) {
+Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes, int max_triangles,
+                  Progress* progress) {
   throw_if_any(validate(polygon));
   throw_if_any(validate(polygon, size, sizes, max_triangles));
   Rings rings = resolved_rings(polygon, size);
@@ -359,9 +365,9 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
     const Rings unit = rings.within(frame);
     Triangulation triangulation;
     mark_domain(triangulation, insert_rings(triangulation, unit), unit);
-    refine(triangulation, field, max_triangles);
-    Extraction extraction(polygon, rings, frame, triangulation);
-    if (extraction.keeps_areas()) return std::move(extraction).mesh();
+    refine(triangulation, field, max_triangles, progress);
+    Extraction extraction(polygon, rings, frame, triangulation, progress);
+    if (extraction.keeps_areas()) return std::move(extraction).mesh(progress);
     rings = extraction.rings_as_cut();
   }
   throw InvalidProblem(

@@ -5,6 +5,17 @@
 
 namespace signorini {
 
+class Progress;
+
+/// Vertices, arcs and holes that a polygon may have, those of its holes included; and local sizes.
+inline constexpr int most_vertices = 10'000, most_arcs = 500, most_holes = 2000, most_local_sizes = 500;
+
+/// The mesh would have more triangles than allowed.
+class TooManyTriangles : public InvalidProblem {
+ public:
+  using InvalidProblem::InvalidProblem;
+};
+
 /// Every fault of the polygon, with its pointer: `/domain/vertices/3`, `/domain/holes/0/2`, `/domain/sides`.
 /// Edges cross where the chords do that stand for arcs.
 /// Points, and points and edges, closer than 1e-9 of the domain's extent count as touching.
@@ -29,8 +40,8 @@ double area(const Polygon& polygon);
 /// The vertices of the polygon, and between those of an arc the ends of its first chords, are the first
 /// points of the mesh, bit for bit: the outer ring, then the holes. The edges of a part run with the domain
 /// on their left. Equal input gives equal meshes. Throws InvalidProblem for the faults that validate names,
-/// and at `/mesh/size` if the mesh would have more triangles than allowed.
+/// TooManyTriangles at `/mesh/size`, and what a Progress throws, if there is one.
 Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes = {},
-                  int max_triangles = 20'000'000);
+                  int max_triangles = 20'000'000, Progress* progress = nullptr);
 
 }  // namespace signorini

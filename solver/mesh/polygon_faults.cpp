@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "mesh/arc.hpp"
@@ -12,8 +13,6 @@
 
 namespace signorini {
 namespace {
-
-constexpr int most_vertices = 50'000;
 
 /// In the unit frame: below this the points of a triangle would not be told apart well.
 constexpr double least_size = 1e-8;
@@ -34,9 +33,14 @@ std::vector<Fault> faults_of_vertices(const Polygon& polygon) {
   std::vector<Fault> faults;
   std::size_t vertices = 0;
   for (const auto* ring : rings) vertices += ring->size();
+  const auto too_many = [](const char* where, const char* what, int most) -> std::vector<Fault> {
+    return {{where, "a polygon may have at most " + std::to_string(most) + what + "; send a mesh instead"}};
+  };
   if (vertices > most_vertices)
-    return {{"/domain/vertices", "a polygon may have at most " + std::to_string(most_vertices) +
-                                     " vertices with those of its holes; send a mesh instead"}};
+    return too_many("/domain/vertices", " vertices with those of its holes", most_vertices);
+  if (polygon.holes.size() > most_holes) return too_many("/domain/holes", " holes", most_holes);
+  if (polygon.arcs.size() > most_arcs)
+    return too_many("/domain/vertices", " arcs with those of its holes", most_arcs);
   FaultList infinite("/domain", "more points that are not finite");
   for (std::size_t r = 0; r < rings.size(); ++r) {
     const bool has_arc =
@@ -139,13 +143,19 @@ std::vector<Segment> edges_of_ring(const Rings& rings, int ring) {
 std::vector<Fault> misplaced_holes(const Rings& unit) {
   FaultList misplaced("/domain/holes", "more holes that do not lie inside the domain");
   std::vector<std::vector<Segment>> edges;
-  for (int ring = 0; ring < unit.size(); ++ring) edges.push_back(edges_of_ring(unit, ring));
+  std::vector<Box> boxes;
+  for (int ring = 0; ring < unit.size(); ++ring) {
+    edges.push_back(edges_of_ring(unit, ring));
+    boxes.push_back(box_around(edges.back()[0], 0));
+    for (const Segment& edge : edges.back())
+      boxes.back() = box_around_both(boxes.back(), box_around(edge, 0));
+  }
   for (int hole = 1; hole < unit.size(); ++hole) {
     const Point& inside = unit.points[unit.begin[hole]];
     if (winding_number(inside, edges[0]) == 0)
       misplaced.add(unit.pointer_to_ring(hole), "must lie inside the outer ring");
     for (int other = 1; other < unit.size(); ++other)
-      if (other != hole && winding_number(inside, edges[other]) != 0)
+      if (other != hole && is_within(inside, boxes[other]) && winding_number(inside, edges[other]) != 0)
         misplaced.add(unit.pointer_to_ring(hole),
                       "lies inside " + unit.pointer_to_ring(other) + ", another hole; leave it out");
   }
@@ -162,6 +172,18 @@ std::vector<Fault> faults_of_size(const std::string& where, double size, double 
 
 /// Narrow places may not ask for more triangles than this, which take some seconds to make.
 constexpr double most_in_narrow_places = 300'000;
+
+/// Every check looks at all pairs of edges that may lie close to each other: so many take tenths of a second.
+std::vector<Fault> intricate_faults(const Rings& given, const Rings& unit) {
+  constexpr std::size_t most_pairs = 500'000;
+  const std::optional<std::array<int, 2>> last = pair_of_near_edges(unit, most_pairs);
+  if (!last) return {};
+  return {{unit.pointer_to(last->front()),
+           "more than " + std::to_string(most_pairs) +
+               " pairs of edges lie closer to each other than they are long, such as " +
+               given.in_words(last->front()) + " and " + given.in_words(last->back()) +
+               ": leave out what the solution does not depend on, or send a mesh instead"}};
+}
 
 std::vector<Fault> narrow_faults(const Rings& given, const Rings& unit) {
   const NarrowPlaces narrow = narrow_places(unit, most_in_narrow_places);
@@ -184,7 +206,8 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
     return {{"/domain/vertices", reason}};
   const Rings unit = given.within(UnitFrame(given.points));
   // Each check relies on the ones before it.
-  std::vector<Fault> faults = repeated_points(given, unit);
+  std::vector<Fault> faults = intricate_faults(given, unit);
+  if (faults.empty()) faults = repeated_points(given, unit);
   if (faults.empty()) faults = crossing_edges(given, unit);
   if (faults.empty()) faults = misplaced_holes(unit);
   if (faults.empty()) faults = narrow_faults(given, unit);

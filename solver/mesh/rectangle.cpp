@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/make_mesh.hpp"
+
 namespace signorini {
 namespace {
 
@@ -31,13 +33,23 @@ class Grid {
   const Divisions& squares_;
 };
 
-std::vector<Point> grid_points(const Grid& grid, const Divisions& squares, Pattern pattern) {
+/// Looks at the progress for each row of a grid that has so many squares.
+void check_row(int row, const Divisions& squares, Progress* progress) {
+  constexpr int often = 4096;
+  if (progress && (squares.x >= often || row % (often / squares.x) == 0)) progress->check();
+}
+
+std::vector<Point> grid_points(const Grid& grid, const Divisions& squares, Pattern pattern,
+                               Progress* progress) {
   std::vector<Point> points;
-  for (int j = 0; j <= squares.y; ++j)
+  for (int j = 0; j <= squares.y; ++j) {
+    check_row(j, squares, progress);
     for (int i = 0; i <= squares.x; ++i) points.push_back(grid.at(i, j));
-  if (pattern == Pattern::crossed)
-    for (int j = 0; j < squares.y; ++j)
-      for (int i = 0; i < squares.x; ++i) points.push_back(grid.at(i + 0.5, j + 0.5));
+  }
+  for (int j = 0; pattern == Pattern::crossed && j < squares.y; ++j) {
+    check_row(j, squares, progress);
+    for (int i = 0; i < squares.x; ++i) points.push_back(grid.at(i + 0.5, j + 0.5));
+  }
   return points;
 }
 
@@ -93,13 +105,15 @@ Divisions divisions(const Rectangle& domain, const MeshRequest& request) {
   return {parts_of(domain.size.x(), side), parts_of(domain.size.y(), side)};
 }
 
-Mesh rectangle_mesh(const Rectangle& domain, const Divisions& squares, Pattern pattern) {
+Mesh rectangle_mesh(const Rectangle& domain, const Divisions& squares, Pattern pattern, Progress* progress) {
   const Grid grid(domain, squares);
   std::vector<std::array<int, 3>> triangles;
-  for (int j = 0; j < squares.y; ++j)
+  for (int j = 0; j < squares.y; ++j) {
+    check_row(j, squares, progress);
     for (int i = 0; i < squares.x; ++i) cut_square(grid, i, j, pattern, triangles);
-  return make_mesh(grid_points(grid, squares, pattern), std::move(triangles), rectangle_parts(),
-                   sides(grid, squares));
+  }
+  return make_mesh(grid_points(grid, squares, pattern, progress), std::move(triangles), rectangle_parts(),
+                   sides(grid, squares), {}, progress);
 }
 
 }  // namespace signorini

@@ -1,18 +1,20 @@
 #include "mesh/refine.hpp"
 
+#include "mesh/make_mesh.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/upright.hpp"
 
 namespace signorini {
 namespace {
 
-Mesh refine_once(const Mesh& mesh) {
+Mesh refine_once(const Mesh& mesh, Progress* progress) {
   const auto number = static_cast<int>(mesh.points.size());
   std::vector<Point> points = mesh.points;
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) points.push_back(mesh.middle(edge));
 
   std::vector<std::array<int, 3>> triangles;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    if (progress) progress->check_in(t);
     const auto& [a, b, c] = mesh.triangles[t];
     const auto& edges = mesh.triangle_edges[t];
     const int bc = number + edges[0], ca = number + edges[1], ab = number + edges[2];
@@ -28,15 +30,15 @@ Mesh refine_once(const Mesh& mesh) {
       segments.push_back({{middle, directed[i][1]}, part, mesh.circle_of(edge)});
     }
   }
-  Mesh refined =
-      make_mesh(std::move(points), std::move(triangles), names(mesh.boundary), segments, mesh.circles);
+  Mesh refined = make_mesh(std::move(points), std::move(triangles), names(mesh.boundary), segments,
+                           mesh.circles, progress);
   require_upright(refined);
   return refined;
 }
 
 }  // namespace
 
-Mesh refine(const Mesh& mesh, int times, int max_triangles) {
+Mesh refine(const Mesh& mesh, int times, int max_triangles, Progress* progress) {
   std::size_t triangles = mesh.triangles.size();
   for (int i = 0; i < times; ++i) {
     triangles *= 4;
@@ -46,7 +48,7 @@ Mesh refine(const Mesh& mesh, int times, int max_triangles) {
                                                  "mesh"}});
   }
   Mesh refined = mesh;
-  for (int i = 0; i < times; ++i) refined = refine_once(refined);
+  for (int i = 0; i < times; ++i) refined = refine_once(refined, progress);
   refined.notes = mesh.notes;
   return refined;
 }

@@ -134,7 +134,9 @@ Rings resolved_rings(const Polygon& polygon, double longest_chord) {
   Rings rings(polygon, longest_chord);
   // Each round brings a chord four times closer to its arc.
   constexpr int most_rounds = 8;
-  for (int round = 0; round < most_rounds && !rings.circles.empty(); ++round) {
+  constexpr std::size_t most_points = 50'000;
+  for (int round = 0; round < most_rounds && !rings.circles.empty() && rings.points.size() < most_points;
+       ++round) {
     std::vector<std::vector<Point>> middles(rings.points.size());
     bool is_resolved = true;
     for (const auto& pair : colliding_edges(rings.within(UnitFrame(rings.points)), rings.points.size()))

@@ -1,6 +1,9 @@
 #include "mesh/segments.hpp"
 
 #include <algorithm>
+#include <numeric>
+
+#include "progress.hpp"
 
 namespace signorini {
 
@@ -43,6 +46,29 @@ int winding_number(const Point& x, const std::vector<Segment>& curves) {
     const bool falls = to.y() < x.y() && from.y() >= x.y();
     if (rises && twice_area(from, to, x) > 0) ++turns;
     if (falls && twice_area(from, to, x) < 0) --turns;
+  }
+  return turns;
+}
+
+std::vector<int> winding_numbers(const std::vector<Point>& points, const std::vector<Segment>& curves,
+                                 Progress* progress) {
+  std::vector<int> by_height(points.size());
+  std::iota(by_height.begin(), by_height.end(), 0);
+  std::ranges::sort(by_height, {}, [&](int i) { return points[i].y(); });
+  const auto low = [](const Segment& edge) { return std::min(edge[0].y(), edge[1].y()); };
+  const auto high = [](const Segment& edge) { return std::max(edge[0].y(), edge[1].y()); };
+  std::vector<Segment> rising = curves;
+  std::ranges::sort(rising, {}, low);
+  // The ray of a point meets only edges at its height.
+  std::vector<Segment> at_height;
+  std::vector<int> turns(points.size());
+  auto next = rising.begin();
+  for (const int i : by_height) {
+    if (progress) progress->check();
+    const double y = points[i].y();
+    for (; next != rising.end() && low(*next) < y; ++next) at_height.push_back(*next);
+    std::erase_if(at_height, [&](const Segment& edge) { return high(edge) < y; });
+    turns[i] = winding_number(points[i], at_height);
   }
   return turns;
 }

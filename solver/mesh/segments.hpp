@@ -7,6 +7,8 @@
 
 namespace signorini {
 
+class Progress;
+
 using Segment = std::array<Point, 2>;
 
 /// Twice the signed area of the triangle a, b, c: positive if it runs counter-clockwise.
@@ -27,5 +29,9 @@ bool cross(const Segment& a, const Segment& b);
 /// How often closed curves, given by their directed segments, wind counter-clockwise around a point that
 /// lies on none of them.
 int winding_number(const Point& x, const std::vector<Segment>& curves);
+
+/// The same for many points. Throws what a Progress throws, if there is one.
+std::vector<int> winding_numbers(const std::vector<Point>& points, const std::vector<Segment>& curves,
+                                 Progress* progress);
 
 }  // namespace signorini

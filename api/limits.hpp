@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/polygon.hpp"
+
+/// How many of everything a problem may have, so that reading one takes a tenth of a second and a few
+/// megabytes at most; only a mesh of the client's own is larger. The OpenAPI document says the same.
+namespace signorini::api::limits {
+
+// Of a document: arrays and objects within each other, values, and members of objects.
+inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 100'000;
+
+// Characters.
+inline constexpr std::size_t title = 200, part_name = 200, expression = 1000;
+/// Of all titles and expressions together.
+inline constexpr std::size_t texts = 1'000'000;
+
+inline constexpr std::size_t vertices = most_vertices, arcs = most_arcs, holes = most_holes,
+                             local_sizes = most_local_sizes;
+/// Of the boundary, each of which may have a condition.
+inline constexpr std::size_t parts = vertices + holes;
+
+inline constexpr int divisions = 10'000, refinements = 12, triangles = 20'000'000, iterations = 1'000'000;
+
+inline constexpr std::size_t sweep_entries = 10'000, study_meshes = 64, study_schemes = 2;
+/// Of all entries of a sweep together, with those that an entry has from the problem.
+inline constexpr std::size_t sweep_conditions = 50'000;
+
+}  // namespace signorini::api::limits
