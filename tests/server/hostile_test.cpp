@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <functional>
+#include <numbers>
 #include <thread>
 
 #include <fcntl.h>
@@ -93,8 +95,9 @@ class Hostile : public testing::Test {
     return client[0].heard();
   }
 
-  /// Memory stays within the limit of a body and 32 MB, and everybody else is answered within 100 ms. What stalls the
-  /// service stalls it each time; a pause of the machine, which other programs share, does not come back three times.
+  /// Memory stays within the limit of a body and 32 MB, and everybody else is answered within 100 ms. What
+  /// stalls the service stalls it each time; a pause of the machine, which other programs share, does not
+  /// come back three times.
   void withstand(const std::function<void()>& attack) {
     httplib::Client("127.0.0.1", port()).Get("/healthz");
     const pid_t process = daemon_.process().id();
@@ -235,6 +238,96 @@ TEST_F(Hostile, JsonThatBreaksItsReaders) {
           << body.substr(0, 60) << reply;
     }
   });
+}
+
+/// The vertices of a regular polygon.
+json ring(int vertices, double radius, double x, double y) {
+  json points = json::array();
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * i / vertices;
+    points.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
+  }
+  return points;
+}
+
+json membrane_on(const json& domain, const json& mesh) {
+  return {{"model", "membrane"},
+          {"domain", domain},
+          {"mesh", mesh},
+          {"material", {{"stiffness", 1}}},
+          {"boundary", {{"all", {{"type", "fixed"}}}}},
+          {"scheme", "nonconforming"}};
+}
+
+json many_holes() {
+  json holes = json::array();
+  for (int i = 0; i < 16'000; ++i) holes.push_back(ring(4, 0.2, i % 127, i / 127));
+  const json outside{{-1, -1}, {128, -1}, {128, 128}, {-1, 128}};
+  return membrane_on({{"type", "polygon"}, {"vertices", outside}, {"holes", holes}}, {{"size", 30}});
+}
+
+json zigzag(int vertices) {
+  json points{{vertices * 1e-3, -1}, {0, -1}};
+  for (int i = 0; i < vertices; ++i) points.push_back({i * 1e-3, i % 2});
+  return membrane_on({{"type", "polygon"}, {"vertices", points}}, {{"size", 1}});
+}
+
+json sweep_of_long_gaps() {
+  std::string gap = "0.1";
+  while (gap.size() < 390) gap += "+sin(7*x)";
+  json problem = membrane_on({{"type", "rectangle"}}, {{"divisions", {8, 8}}});
+  problem["boundary"]["bottom"] = {{"type", "contact"}};
+  for (int i = 0; i < 10'000; ++i) problem["sweep"].push_back({{"boundary", {{"bottom", {{"gap", gap}}}}}});
+  return problem;
+}
+
+json sweep_of_many_parts() {
+  json problem = membrane_on({{"type", "polygon"}, {"vertices", ring(2000, 1, 0, 0)}}, {{"size", 1}});
+  problem["sweep"] = json(10'000, json::object());
+  return problem;
+}
+
+json unknown_members() {
+  json problem = membrane_on({{"type", "rectangle"}}, {{"divisions", {8, 8}}});
+  for (int i = 0; i < 250'000; ++i) problem["u" + std::to_string(i)] = 1;
+  return problem;
+}
+
+json refined_often() {
+  json problem = membrane_on({{"type", "mesh"},
+                              {"points", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
+                              {"triangles", {{0, 1, 2}, {0, 2, 3}}},
+                              {"boundary", {{"rim", {{0, 1}, {1, 2}, {2, 3}, {3, 0}}}}}},
+                             {{"refine", 11}});
+  return problem;
+}
+
+/// Eight at a time ask what such a problem would take. Nobody makes its mesh for them.
+TEST_F(Hostile, ProblemsThatAreCostlyToLookAt) {
+  const json polygon{{"type", "polygon"}, {"vertices", ring(100, 1, 0, 0)}};
+  const std::vector<json> problems{membrane_on(polygon, {{"size", 2e-3}}),
+                                   many_holes(),
+                                   zigzag(24'000),
+                                   sweep_of_long_gaps(),
+                                   sweep_of_many_parts(),
+                                   unknown_members(),
+                                   refined_often(),
+                                   zigzag(9'000)};
+  for (const json& problem : problems) {
+    const std::string body = problem.dump();
+    ASSERT_LT(body.size(), body_limit);
+    withstand([&] {
+      std::vector<std::thread> clients;
+      for (int i = 0; i < 8; ++i)
+        clients.emplace_back([&] {
+          httplib::Client client("127.0.0.1", port());
+          client.set_read_timeout(10);
+          const auto reply = client.Post("/v1/validate", body, "application/json");
+          EXPECT_TRUE(reply) << body.substr(0, 100);
+        });
+      for (std::thread& client : clients) client.join();
+    });
+  }
 }
 
 TEST_F(Hostile, FourWhoSendAByteASecond) {

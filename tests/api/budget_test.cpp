@@ -1,0 +1,186 @@
+// What is done with a problem before it is taken in costs little, whatever the problem asks for.
+
+#include <cmath>
+#include <ctime>
+#include <functional>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "api/json_document.hpp"
+#include "api/problem_json.hpp"
+#include "faults_of.hpp"
+#include "../problems/sanitized.hpp"
+#include "solve.hpp"
+
+namespace signorini::api {
+namespace {
+
+using nlohmann::json;
+
+/// Seconds that this thread has had a core: what other programs take meanwhile does not count.
+double seconds_at_work() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// All that a thread of the service does with a body.
+void look_at(const std::string& body) {
+  const Request request = parse_request(body);
+  estimate(request.problem);
+  if (request.study) estimate(request.problem, *request.study);
+  require_rest(request.problem);
+}
+
+/// The pointer of the first fault; `malformed` if the body is no document, empty if the problem may be taken
+/// in.
+std::string found_soon(const json& problem) {
+  const std::string body = problem.dump();
+  std::string found;
+  double least = 1e9;
+  for (int attempt = 0; attempt < 3 && least > 0.1; ++attempt) {
+    const double begin = seconds_at_work();
+    try {
+      const auto pointers = pointers_of(faults_of([&] { look_at(body); }));
+      found = pointers.empty() ? "" : pointers.front().empty() ? "the whole" : pointers.front();
+    } catch (const MalformedJson&) {
+      found = "malformed";
+    }
+    least = std::min(least, seconds_at_work() - begin);
+  }
+  if (!sanitized) {
+    EXPECT_LT(least, 0.15) << body.substr(0, 200);
+  }
+  return found;
+}
+
+json ring(int vertices, double radius = 1, double x = 0, double y = 0) {
+  json points = json::array();
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * i / vertices;
+    points.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
+  }
+  return points;
+}
+
+json membrane_on(const json& domain, const json& mesh) {
+  return {{"model", "membrane"},
+          {"domain", domain},
+          {"mesh", mesh},
+          {"material", {{"stiffness", 1}}},
+          {"boundary", {{"all", {{"type", "fixed"}}}}},
+          {"scheme", "nonconforming"}};
+}
+
+json polygon(const json& vertices, const json& mesh) {
+  return membrane_on({{"type", "polygon"}, {"vertices", vertices}}, mesh);
+}
+
+json square() {
+  return membrane_on({{"type", "rectangle"}}, {{"divisions", {8, 8}}});
+}
+
+json with_holes(int holes) {
+  const int row = static_cast<int>(std::ceil(std::sqrt(holes)));
+  json problem = polygon({{-1, -1}, {row, -1}, {row, row}, {-1, row}}, {{"size", row / 4.}});
+  for (int i = 0; i < holes; ++i)
+    problem["domain"]["holes"].push_back(ring(4, 0.2, i % row, std::floor(i / row)));
+  return problem;
+}
+
+json zigzag(int vertices, double turn) {
+  json points = json::array();
+  const auto add = [&](double x, double y) {
+    points.push_back({std::cos(turn) * x - std::sin(turn) * y, std::sin(turn) * x + std::cos(turn) * y});
+  };
+  for (int i = 0; i < vertices - 2; ++i) add(i * 1e-3, i % 2);
+  add((vertices - 3) * 1e-3, -1);
+  add(0, -1);
+  return polygon(points, {{"size", 1}});
+}
+
+json swept(json problem, std::size_t entries, const json& entry) {
+  problem["sweep"] = json(entries, entry);
+  return problem;
+}
+
+std::string long_formula(std::size_t characters) {
+  std::string formula = "1";
+  while (formula.size() + 9 <= characters) formula += "+sin(7*x)";
+  return formula;
+}
+
+TEST(Budget, APolygonIsMeasuredAndNotMeshed) {
+  EXPECT_EQ(found_soon(polygon(ring(100), {{"size", 2e-3}})), "");
+  EXPECT_EQ(found_soon(polygon(ring(9990), {{"size", 0.1}})), "");
+  json local = polygon(ring(1000), {{"size", 1}});
+  for (int i = 0; i < 500; ++i)
+    local["mesh"]["sizes"].push_back({{"at", {1e-3 * i, 0}}, {"radius", 0.01}, {"size", 1e-3}});
+  EXPECT_EQ(found_soon(local), "");
+}
+
+TEST(Budget, APolygonHasLimits) {
+  EXPECT_EQ(found_soon(with_holes(1900)), "");
+  EXPECT_EQ(found_soon(with_holes(16'000)), "/domain/holes");
+  EXPECT_EQ(found_soon(zigzag(24'000, 0)), "/domain/vertices");
+  for (const double turn : {0., std::numbers::pi / 4, std::numbers::pi / 2})
+    EXPECT_NE(found_soon(zigzag(9'990, turn)), "");
+}
+
+TEST(Budget, RefinementsAreCountedAndNotMade) {
+  const json two{{"type", "mesh"},
+                 {"points", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
+                 {"triangles", {{0, 1, 2}, {0, 2, 3}}},
+                 {"boundary", {{"rim", {{0, 1}, {1, 2}, {2, 3}, {3, 0}}}}}};
+  EXPECT_EQ(found_soon(membrane_on(two, {{"refine", 11}})), "");
+}
+
+TEST(Budget, ASweepIsReadOnce) {
+  json contact = square();
+  contact["boundary"]["bottom"] = {{"type", "contact"}};
+  const auto gap = [](const json& value) { return json{{"boundary", {{"bottom", {{"gap", value}}}}}}; };
+  EXPECT_EQ(found_soon(swept(contact, 10'000, gap(long_formula(1000)))), "the whole");
+  EXPECT_EQ(found_soon(swept(contact, 1000, gap(long_formula(980)))), "");
+  EXPECT_EQ(found_soon(swept(contact, 10'000, gap("0.1 * x"))), "");
+  EXPECT_EQ(found_soon(swept(polygon(ring(2000), {{"size", 1}}), 10'000, json::object())), "/sweep");
+}
+
+TEST(Budget, FaultsAreNotCollectedForEver) {
+  json unknown = square();
+  for (int i = 0; i < 90'000; ++i) unknown["u" + std::to_string(i)] = 1;
+  EXPECT_EQ(found_soon(unknown), "/u0");
+  for (int i = 0; i < 20'000; ++i) unknown["v" + std::to_string(i)] = 1;
+  EXPECT_EQ(found_soon(unknown), "malformed");
+  json parts = polygon(ring(2000), {{"size", 1}});
+  for (int i = 0; i < 2000; ++i) parts["boundary"]["sidf" + std::to_string(i)] = {{"type", "fixed"}};
+  EXPECT_EQ(found_soon(parts), "/boundary/sidf0");
+}
+
+TEST(Budget, LongFormulasAreTriedInFewPlaces) {
+  json problem = polygon(ring(1000), {{"size", 0.05}});
+  problem["material"]["stiffness"] = "1 + x^2 + 0 * (" + long_formula(900) + ")";
+  problem["load"]["body"] = long_formula(990);
+  EXPECT_EQ(found_soon(problem), "");
+}
+
+TEST(Budget, AStudyCountsItsMeshesByOnePolygon) {
+  json problem = polygon(ring(9990), {{"size", 0.1}});
+  for (int i = 0; i < 64; ++i) problem["study"]["sizes"].push_back(0.03 + 0.001 * i);
+  EXPECT_EQ(found_soon(problem), "");
+}
+
+/// The exact counts of small meshes stand beside it in other tests.
+TEST(Budget, TheMeasuredSizesAreNearTheMade) {
+  for (const double size : {0.03, 0.015}) {
+    const Problem problem = parse_request(polygon(ring(100), {{"size", size}}).dump()).problem;
+    const auto predicted = static_cast<double>(estimate(problem).triangles);
+    const auto made = static_cast<double>(solve(problem, {ActiveSet{}, {}}).summary.triangles);
+    EXPECT_GE(predicted, made) << size;
+    EXPECT_LE(predicted, 2 * made) << size;
+  }
+}
+
+}  // namespace
+}  // namespace signorini::api

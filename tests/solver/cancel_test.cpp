@@ -1,0 +1,157 @@
+// A solve ends soon after its observer asks for it, whatever it is doing.
+
+#include <algorithm>
+#include <ctime>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "problems/elasticity.hpp"
+#include "problems/membrane.hpp"
+#include "server/long_tests.hpp"
+#include "study.hpp"
+
+namespace signorini {
+namespace {
+
+/// Seconds that this thread has had a core: what other programs take meanwhile does not count.
+double seconds_at_work() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Ends a solve at a moment, and knows the phase it was in.
+class CancelsAt : public Observer {
+ public:
+  explicit CancelsAt(double moment) : moment_(moment) {}
+
+  void entered(Phase phase) override {
+    if (seconds_at_work() < moment_) phase_ = phase;
+  }
+  bool keep_going() override { return seconds_at_work() < moment_; }
+
+  const char* phase() const { return name(phase_); }
+
+ private:
+  const double moment_;
+  Phase phase_ = Phase::mesh;
+};
+
+Polygon disc(int vertices) {
+  Polygon polygon;
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2 * std::numbers::pi * i / vertices;
+    polygon.vertices.push_back({std::cos(angle), std::sin(angle)});
+  }
+  return polygon;
+}
+
+Problem membrane_on(Domain domain, MeshRequest mesh, const std::vector<std::string>& held) {
+  Problem problem;
+  problem.domain = std::move(domain);
+  problem.mesh = std::move(mesh);
+  problem.body = Field(-1);
+  for (const std::string& part : held) problem.boundary[part] = Fixed{};
+  return problem;
+}
+
+Problem strip(int long_side, int short_side, Scheme scheme) {
+  Problem problem = problems::paper(scheme, 1);
+  problem.domain = Rectangle{{0, 0}, {100, 1}};
+  problem.mesh.fineness = Divisions{long_side, short_side};
+  return problem;
+}
+
+MeshData grid(int n) {
+  MeshData data;
+  const auto at = [n](int i, int j) { return j * (n + 1) + i; };
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) data.points.push_back({1. * i / n, 1. * j / n});
+  std::vector<std::array<int, 2>> edges;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      data.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      data.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+    edges.insert(edges.end(), {{at(j, 0), at(j + 1, 0)}, {at(j, n), at(j + 1, n)}});
+    edges.insert(edges.end(), {{at(0, j), at(0, j + 1)}, {at(n, j), at(n, j + 1)}});
+  }
+  data.boundary = {{"all around", edges}};
+  return data;
+}
+
+using Run = std::function<void(Observer&)>;
+
+Run solves(const Problem& problem, const Settings& settings = {}, const std::vector<Variation>& sweep = {}) {
+  return [=](Observer& observer) {
+    class Nowhere : public OperatorCache {
+     public:
+      std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
+      void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+    } nowhere;
+    solve(problem, sweep, settings, observer, nowhere);
+  };
+}
+
+/// Ten problems, each with the seconds in which its phases lie.
+std::vector<std::pair<Run, double>> problems_to_cancel() {
+  Problem graded = membrane_on(disc(100), LargestEdge{0.1}, {"side0"});
+  graded.mesh.sizes = {{{0, 0}, 0.2, 1e-3}};
+  Problem refined = membrane_on(disc(10), LargestEdge{0.5}, {"side0"});
+  refined.mesh.refine = 6;
+  Problem adaptive = problems::paper(Scheme::nonconforming, 8);
+  adaptive.mesh.adaptive = Adaptive{1e-6, 2'000'000};
+  const Problem paper = problems::paper(Scheme::conforming, 60);
+  const Variation lower{"", Field(-20), paper.boundary, "lower"};
+  const Study study{{Scheme::conforming, Scheme::nonconforming},
+                    {{"/0", MeshRequest(Divisions{80, 80})}, {"/1", MeshRequest(Divisions{160, 160})}},
+                    {}};
+  const Settings paper_form{PaperUzawa{0.1, 1, 0.5, 1e-9, 1000}, {}};
+  return {{solves(membrane_on(disc(100), LargestEdge{3e-3}, {"side0"})), 4},
+          {solves(graded), 3},
+          {solves(refined), 3},
+          {solves(strip(6000, 4, Scheme::nonconforming)), 8},
+          {solves(strip(1500, 4, Scheme::conforming), {ActiveSet{}, {}}), 8},
+          {solves(paper, {}, std::vector<Variation>(100, lower)), 3},
+          {[study](Observer& observer) {
+             run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, {}}, observer, 0);
+           },
+           4},
+          {solves(adaptive), 4},
+          {solves(membrane_on(grid(300), {}, {"all around"})), 2},
+          {solves(problems::paper(Scheme::nonconforming, 512), paper_form), 4}};
+}
+
+/// Promised is a quarter of a second for 99 of a hundred.
+TEST(Cancel, EndsASolveWithinAQuarterOfASecondWhateverItDoes) {
+  std::mt19937 random(5);
+  std::vector<double> late;
+  const int rounds = server::long_tests() ? 20 : 1;
+  for (int round = 0; round < rounds; ++round) {
+    const auto all = problems_to_cancel();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double most = server::long_tests() ? all[i].second : std::min(1.5, all[i].second);
+      const double moment = seconds_at_work() + std::uniform_real_distribution<>(0.01, most)(random);
+      CancelsAt observer(moment);
+      try {
+        all[i].first(observer);
+      } catch (const Cancelled&) {
+      }
+      late.push_back(std::max(0., seconds_at_work() - moment));
+      if (sanitized) continue;
+      EXPECT_LT(late.back(), 0.5) << "problem " << i << " in the phase " << observer.phase();
+      if (late.back() > 0.1) std::printf("problem %zu, %s: %.3f s\n", i, observer.phase(), late.back());
+    }
+  }
+  std::ranges::sort(late);
+  RecordProperty("latest_ms", static_cast<int>(1e3 * late.back()));
+  if (!sanitized) {
+    EXPECT_LT(late[late.size() * 99 / 100 - (late.size() < 100 ? 1 : 0)], 0.25);
+  }
+}
+
+}  // namespace
+}  // namespace signorini
