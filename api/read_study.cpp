@@ -11,15 +11,13 @@ using nlohmann::json;
 
 std::vector<Scheme> read_schemes(const Value& value) {
   std::vector<Scheme> schemes;
-  const std::vector<Value> entries =
-      value.list("an array of schemes: " + list_of(only_names(scheme_names)), limits::study_schemes);
-  if (value.json().is_array() && entries.empty()) value.fault("must have at least one scheme");
-  for (const Value& entry : entries) {
+  value.for_each("an array of schemes: " + list_of(only_names(scheme_names)), [&](const Value& entry) {
     const auto scheme = entry.one_of(scheme_names);
-    if (!scheme) continue;
+    if (!scheme) return;
     if (std::ranges::find(schemes, *scheme) != schemes.end()) entry.fault("is there twice");
     schemes.push_back(*scheme);
-  }
+  });
+  if (value.json().is_array() && value.json().empty()) value.fault("must have at least one scheme");
   return schemes;
 }
 

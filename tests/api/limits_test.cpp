@@ -41,7 +41,6 @@ TEST(Limits, StandInTheOpenapiDocument) {
       {"Adaptive/properties/max_triangles/maximum", limits::triangles},
       {"Solver/properties/max_iterations/maximum", limits::iterations},
       {"Problem/properties/sweep/maxItems", limits::sweep_entries},
-      {"Study/properties/schemes/maxItems", limits::study_schemes},
       {"Study/properties/divisions/maxItems", limits::study_meshes},
       {"Study/properties/sizes/maxItems", limits::study_meshes},
       {"Study/properties/refine/maxItems", limits::study_meshes}};
