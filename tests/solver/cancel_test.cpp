@@ -98,9 +98,9 @@ Run solves(const Problem& problem, const Settings& settings = {}, const std::vec
 
 /// Ten problems, each with the seconds in which its phases lie.
 std::vector<std::pair<Run, double>> problems_to_cancel() {
-  Problem graded = membrane_on(disc(100), LargestEdge{0.1}, {"side0"});
+  Problem graded = membrane_on(disc(100), MeshRequest(LargestEdge{0.1}), {"side0"});
   graded.mesh.sizes = {{{0, 0}, 0.2, 1e-3}};
-  Problem refined = membrane_on(disc(10), LargestEdge{0.5}, {"side0"});
+  Problem refined = membrane_on(disc(10), MeshRequest(LargestEdge{0.5}), {"side0"});
   refined.mesh.refine = 6;
   Problem adaptive = problems::paper(Scheme::nonconforming, 8);
   adaptive.mesh.adaptive = Adaptive{1e-6, 2'000'000};
@@ -110,7 +110,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
                     {{"/0", MeshRequest(Divisions{80, 80})}, {"/1", MeshRequest(Divisions{160, 160})}},
                     {}};
   const Settings paper_form{PaperUzawa{0.1, 1, 0.5, 1e-9, 1000}, {}};
-  return {{solves(membrane_on(disc(100), LargestEdge{3e-3}, {"side0"})), 4},
+  return {{solves(membrane_on(disc(100), MeshRequest(LargestEdge{3e-3}), {"side0"})), 4},
           {solves(graded), 3},
           {solves(refined), 3},
           {solves(strip(6000, 4, Scheme::nonconforming)), 8},
