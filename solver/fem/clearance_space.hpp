@@ -36,7 +36,7 @@ struct ContactEdge {
   Vector direction;           ///< the unit vector that u_n is taken along: n unless the condition names one
 };
 
-/// Λ_h, the space of the clearance on Γ_C (paper-notes, "The two schemes").
+/// Λ_h, the space of the clearance on Γ_C (solver/README.md, "The two schemes").
 ///
 /// On an arc the gap is asked at the arc, not at its chord. With x(s) on the chord, X(s) the point of the arc
 /// nearest to it and n(X) the arc's normal, the condition is
