@@ -22,6 +22,8 @@ struct Totals {
   double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)² over the triangles
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
   double carried = 0;  ///< CarriedLoads::norm
+  /// The second pair is one with the same uncertain loads: not if p* had to change for them.
+  bool second_counts = true;
   Eigen::VectorXd shares;
 
  private:
