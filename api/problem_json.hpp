@@ -20,7 +20,7 @@ struct Request {
   std::optional<Study> study;
 };
 
-/// Reads a problem document (api-contract, "A problem"). Throws MalformedJson if the text is no JSON, and
+/// Reads a problem document (api/README.md, "A problem"). Throws MalformedJson if the text is no JSON, and
 /// InvalidProblem with every fault found, each with its JSON pointer and the allowed values: of the
 /// document, and if it has none, those that validate() of the solver sees, of a long sweep in the first
 /// entries.

@@ -12,7 +12,7 @@
 #include "problem/settings.hpp"
 #include "problem/study.hpp"
 
-/// The members of a problem document (api-contract, "A problem"), each read by one function. All add their
+/// The members of a problem document (api/README.md, "A problem"), each read by one function. All add their
 /// faults to those of the value; what they answer then is of no use.
 namespace signorini::api {
 

@@ -38,7 +38,7 @@ struct ResultHead {
   std::string_view problem_json;  ///< the problem as the client sent it
 };
 
-/// Writes the result document (api-contract, "A result"). Throws InvalidProblem, before it writes anything,
+/// Writes the result document (api/README.md, "A result"). Throws InvalidProblem, before it writes anything,
 /// for fields that the solution cannot have.
 void write_result(DocumentWriter& out, const ResultHead& head, const Solution& solution,
                   const ResultFields& fields);

@@ -5,7 +5,7 @@
 #include "api/document_writer.hpp"
 #include "solution.hpp"
 
-/// The members of a result document (api-contract, "A result"), each written by one function as a value.
+/// The members of a result document (api/README.md, "A result"), each written by one function as a value.
 namespace signorini::api {
 
 void write_summary(DocumentWriter& out, const Summary& summary);

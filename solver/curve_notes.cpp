@@ -19,10 +19,11 @@ struct Side {
   bool touches;
 };
 
-/// The body turns left by less than a right angle from the side that ends in a point to the one that begins.
+/// The body turns left by less than a right angle from the side that ends in a point to the one that begins;
+/// by so little an angle that no mesh shows the pressure there does not count.
 bool bends_outwards(const Vector& before, const Vector& after) {
-  const double sine = before.x() * after.y() - before.y() * after.x();
-  return sine > 0 && before.dot(after) > 1e-9 && !is_same_direction(before, after);
+  constexpr double little = 5e-5;
+  return before.x() * after.y() - before.y() * after.x() > little && before.dot(after) > 1e-9;
 }
 
 /// By part the number of corners where the contact bends outwards and touches, and one of them.

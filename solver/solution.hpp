@@ -162,7 +162,8 @@ struct TrueErrors {
   std::optional<double> energy;        ///< |J(u) − J_h|
   /// What the error bound bounds: √(‖σ − σ_h‖²_C + 2 (J(v) − J(u)) + 2 <p*, g − u_n>) with its v and p*,
   /// where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E + 2 <p, g − v_n>. The last term counts if u is known, on the
-  /// edges of Solution::admissible_pressure.
+  /// edges of Solution::admissible_pressure. On patches the bound knows <p, g − v_n> of two pairs together only
+  /// (certify/THEORY.md, Theorem 3).
   std::optional<double> total;
 };
 

@@ -20,6 +20,7 @@ Response download(Service& service, const Request& request, const char* content_
   response.job = job.id;
   response.content_type = content_type;
   response.headers.emplace_back("Content-Disposition", "attachment; filename=\"" + job.id + suffix + "\"");
+  response.in_the_way = [&results = service.results] { return results.are_awaited(); };
   response.write_body = [solution = result.solution, write](const PieceSink& sink) {
     return write(*solution, sink);
   };

@@ -48,7 +48,7 @@ JobWithResult find_job_with_result(Service& service, const Request& request) {
 }
 
 JobWithResult with_result(Service& service, Job job) {
-  std::optional<JobResult> result = service.store.result(job.id);
+  std::optional<JobResult> result = service.results.get(job.id);
   if (!result) throw unknown_solve();
   // What is stored may turn out to be damaged when it is read.
   if (job.verdict.summary && !result->solution) throw without_result(service.store.find(job.id).value_or(job));

@@ -16,17 +16,23 @@ Router routes(Service& service) {
   const auto with = [&service](Response (*handle)(Service&, const Request&)) -> Handler {
     return [&service, handle](const Request& request) { return handle(service, request); };
   };
+  // What is made of a whole result may be read, written and compressed for seconds.
+  const auto long_reply = [&with](const std::string& pattern, std::vector<std::string> media_types,
+                                  Response (*handle)(Service&, const Request&)) -> Route {
+    return {"GET",        pattern,           std::move(media_types),
+            with(handle), Audience::clients, [](const Query& query) { return !picks_summary_alone(query); }};
+  };
   std::vector<Route> table{
       {"POST", "/v1/solves", document_types, with(post_solve)},
       {"GET", "/v1/solves", document_types, with(list_solves)},
       {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
-      {"GET", "/v1/solves/{id}/result", document_types, with(get_result)},
-      {"GET", "/v1/solves/{id}/result.vtu", {vtu_media_type}, with(get_result_vtu)},
-      {"GET", "/v1/solves/{id}/history.csv", {"text/csv"}, with(get_history_csv)},
-      {"GET", "/v1/solves/{id}/contact.csv", {"text/csv"}, with(get_contact_csv)},
-      {"GET", "/v1/solves/{id}/study.csv", {"text/csv"}, with(get_study_csv)},
-      {"GET", "/v1/solves/{id}/history", document_types, with(get_history)},
+      long_reply("/v1/solves/{id}/result", document_types, get_result),
+      long_reply("/v1/solves/{id}/result.vtu", {vtu_media_type}, get_result_vtu),
+      long_reply("/v1/solves/{id}/history.csv", {"text/csv"}, get_history_csv),
+      long_reply("/v1/solves/{id}/contact.csv", {"text/csv"}, get_contact_csv),
+      long_reply("/v1/solves/{id}/study.csv", {"text/csv"}, get_study_csv),
+      long_reply("/v1/solves/{id}/history", document_types, get_history),
       {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},
       {"POST", "/v1/studies", document_types, with(post_study)},
       {"POST", "/v1/validate", document_types, with(validate_problem)},

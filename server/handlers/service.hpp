@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "server/access/access.hpp"
+#include "server/handlers/shared_results.hpp"
 #include "server/http/event_streams.hpp"
 #include "server/http/places.hpp"
 #include "server/jobs/kept_operators.hpp"
@@ -19,7 +20,8 @@ struct Limits {
   std::size_t max_body_bytes = 16 << 20;
   std::int64_t max_unknowns = 20'000'000;
   double max_memory = std::numeric_limits<double>::infinity();  ///< bytes that a solve may take
-  std::size_t max_waits = 4096;  ///< clients that may wait for their solves at the same time
+  std::size_t max_result_bytes = 256 << 20;  ///< of results from which replies are written at the same time
+  std::size_t max_waits = 4096;              ///< clients that may wait for their solves at the same time
 };
 
 /// What the handlers work on.
@@ -34,6 +36,7 @@ struct Service {
   UniqueIds ids = {};
   Places waits{limits.max_waits};  ///< of clients that wait
   Places large_bodies{1};          ///< of problems that take long to read
+  SharedResults results{store, limits.max_result_bytes};
 };
 
 }  // namespace signorini::server

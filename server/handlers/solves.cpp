@@ -46,34 +46,32 @@ void require_available(const api::ResultFields& fields, int components) {
 
 /// A document about the job, which lives as long as it is written: `write(out, about)`.
 template <typename Write>
-Response job_response(const Request& request, int status, JobWithResult about, const Write& write) {
+Response job_response(Service& service, const Request& request, int status, JobWithResult about,
+                      const Write& write) {
   const auto shared = std::make_shared<const JobWithResult>(std::move(about));
   Response response =
       document_response(request, status, [shared, write](api::DocumentWriter& out) { write(out, *shared); });
   response.job = shared->job.id;
+  response.in_the_way = [&results = service.results] { return results.are_awaited(); };
   return response;
 }
 
 Response status_response(Service& service, const Request& request, int status, Job job) {
   const auto live = service.scheduler.live(job.id);
-  return job_response(request, status, {std::move(job), {}},
+  return job_response(service, request, status, {std::move(job), {}},
                       [live](api::DocumentWriter& out, const JobWithResult& about) {
                         write_status(out, about.job, live.get());
                       });
 }
 
-Response result_response(const Request& request, JobWithResult ended, const api::ResultFields& fields) {
-  return job_response(request, 200, std::move(ended),
+Response result_response(Service& service, const Request& request, JobWithResult ended,
+                         const api::ResultFields& fields) {
+  return job_response(service, request, 200, std::move(ended),
                       [fields](api::DocumentWriter& out, const JobWithResult& solved) {
                         const auto& [job, result] = solved;
                         const api::ResultHead head{job.id, name(job.status), *result.problem};
                         api::write_result(out, head, *result.solution, fields);
                       });
-}
-
-/// The summary stands in the status: where nothing else is picked, no result is read.
-bool picks_summary_alone(const Request& request) {
-  return parameter(request.query, "fields") == "summary";
 }
 
 JobWithResult with_summary(Job job) {
@@ -156,9 +154,9 @@ Response answer(Service& service, const Request& request, std::optional<Job> job
   const bool ended = waited && has_ended(job->status);
   Response response =
       ended && job->verdict.summary
-          ? result_response(request,
-                            picks_summary_alone(request) ? with_summary(std::move(*job))
-                                                         : with_result(service, std::move(*job)),
+          ? result_response(service, request,
+                            picks_summary_alone(request.query) ? with_summary(std::move(*job))
+                                                               : with_result(service, std::move(*job)),
                             fields)
           : status_response(service, request, ended ? 200 : 202, std::move(*job));
   response.headers.emplace_back("Location", location);
@@ -235,6 +233,10 @@ Response accept(Service& service, const Request& request,
 
 }  // namespace
 
+bool picks_summary_alone(const Query& query) {
+  return parameter(query, "fields") == "summary";
+}
+
 Response post_solve(Service& service, const Request& request) {
   return accept(service, request, take_in);
 }
@@ -258,11 +260,11 @@ Response get_solve(Service& service, const Request& request) {
 Response get_result(Service& service, const Request& request) {
   allow_only(request.query, {"fields"});
   const api::ResultFields fields = fields_of(request);
-  if (picks_summary_alone(request))
-    return result_response(request, with_summary(find_solved(service, request)), fields);
+  if (picks_summary_alone(request.query))
+    return result_response(service, request, with_summary(find_solved(service, request)), fields);
   JobWithResult ended = find_job_with_result(service, request);
   require_available(fields, ended.result.solution->components);
-  return result_response(request, std::move(ended), fields);
+  return result_response(service, request, std::move(ended), fields);
 }
 
 Response get_history(Service& service, const Request& request) {
@@ -276,7 +278,7 @@ Response get_history(Service& service, const Request& request) {
     iterated.result.history = std::make_shared<const std::vector<Iteration>>(live->history());
   }
   return job_response(
-      request, 200, std::move(iterated), [](api::DocumentWriter& out, const JobWithResult& about) {
+      service, request, 200, std::move(iterated), [](api::DocumentWriter& out, const JobWithResult& about) {
         const auto& history = about.result.history;
         write_history_so_far(out, about.job.status, history ? *history : std::vector<Iteration>());
       });

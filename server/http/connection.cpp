@@ -69,7 +69,28 @@ bool Connection::stopping() const {
   return poll_until(stop_event_, POLLIN, Clock::now());
 }
 
-/// False if the client takes too little, or is one slow reader too many.
+/// Whether others wait for what the client keeps, and it takes little of it.
+bool Connection::is_in_the_way() const {
+  const auto time = Clock::now() - begun_;
+  const bool slow = time > limits_.slow &&
+                    static_cast<double>(taken_) < limits_.rate * std::chrono::duration<double>(time).count();
+  return slow && (slow_readers_.taken() >= slow_readers_.count() || (in_the_way_ && in_the_way_()));
+}
+
+/// In one of the places for slow readers; false if there is none in time either.
+bool Connection::wait_in_place(Clock::time_point until) {
+  constexpr auto look_around = std::chrono::milliseconds(250);
+  const auto give_up = std::min(until, Clock::now() + limits_.slow);
+  std::shared_ptr<void> place;
+  while (Clock::now() < until) {
+    if (!place) place = slow_readers_.take();
+    if (is_in_the_way() || (!place && Clock::now() > give_up)) return false;
+    if (poll_until(socket_, POLLOUT, std::min(until, Clock::now() + look_around))) return true;
+  }
+  return false;
+}
+
+/// False if the client takes too little.
 bool Connection::wait_writable() {
   constexpr auto moment = std::chrono::milliseconds(20);
   if (poll_until(socket_, POLLOUT, Clock::now())) return true;
@@ -80,27 +101,36 @@ bool Connection::wait_writable() {
     patient_since_ = Clock::now();
     taken_since_ = 0;
   }
-  const std::shared_ptr<void> place = slow_readers_.take();
-  const auto patience = stopping() ? std::chrono::seconds(1) : limits_.time;
-  return place && poll_until(socket_, POLLOUT, Clock::now() + patience);
+  return wait_in_place(Clock::now() + (stopping() ? std::chrono::seconds(1) : limits_.time));
 }
 
-void Connection::begin_reply() {
-  patient_since_ = Clock::now();
-  taken_since_ = 0;
+void Connection::begin_reply(std::function<bool()> in_the_way) {
+  in_the_way_ = std::move(in_the_way);
+  patient_since_ = begun_ = Clock::now();
+  taken_since_ = taken_ = 0;
 }
 
 bool Connection::send(std::string_view bytes, bool more) {
   while (!bytes.empty()) {
-    if (!wait_writable()) return false;
+    if (!wait_writable()) {
+      forget_unsent();
+      return false;
+    }
     const ssize_t sent =
         ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0));
     if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
     if (sent <= 0) return false;
     taken_since_ += static_cast<std::uint64_t>(sent);
+    taken_ += static_cast<std::uint64_t>(sent);
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
   return true;
+}
+
+/// When the socket is closed, the system does not keep what the client has not taken either.
+void Connection::forget_unsent() const {
+  const linger at_once{1, 0};
+  setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
 }
 
 void Connection::send_at_once(std::string_view text) const {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@ namespace signorini::server {
 struct WriteLimits {
   std::chrono::seconds time{30};    ///< to take some more of it,
   std::uint64_t bytes = 64 * 1024;  ///< this much at least
+  std::chrono::seconds slow{5};     ///< after which a client who is in the way of others
+  double rate = 16 * 1024;          ///< has to have taken so many bytes a second
 };
 
 /// What came of an attempt to receive.
@@ -24,8 +27,8 @@ enum class Receipt { bytes, nothing, closed };
 class Connection {
  public:
   /// The place is kept until it is left, or the connection is closed. `slow_readers` is how many clients may
-  /// keep a thread waiting until they take more of a reply; one more is left. Every wait ends when the stop
-  /// event (an eventfd of the listener) is signalled.
+  /// keep a thread waiting until they take more of a reply; where there are more, the slow ones are left.
+  /// Every wait ends when the stop event (an eventfd of the listener) is signalled.
   Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
              std::shared_ptr<void> place);
   ~Connection();
@@ -43,8 +46,8 @@ class Connection {
   /// Takes what has come, some 16 KiB at most, without waiting, and gives it to the reader.
   Receipt receive();
 
-  /// From now on the client is to take a reply.
-  void begin_reply();
+  /// From now on the client is to take a reply; others may wait for what that holds.
+  void begin_reply(std::function<bool()> in_the_way);
   /// Sends all of it; false if the client does not take it. `more` follows at once.
   bool send(std::string_view bytes, bool more = false);
   /// Sends as much of it as the client takes at once.
@@ -60,6 +63,9 @@ class Connection {
 
   bool stopping() const;
   bool wait_writable();
+  bool wait_in_place(Clock::time_point until);
+  bool is_in_the_way() const;
+  void forget_unsent() const;
 
   std::shared_ptr<void> place_;
   int socket_;
@@ -68,6 +74,9 @@ class Connection {
   Places& slow_readers_;
   MessageReader reader_;
   bool ended_ = false;
+  std::function<bool()> in_the_way_;
+  Clock::time_point begun_;  ///< the reply
+  std::uint64_t taken_ = 0;  ///< of it
   Clock::time_point patient_since_;
   std::uint64_t taken_since_ = 0;
 };

@@ -18,6 +18,7 @@
 #include "server/http/crew.hpp"
 #include "server/http/dispatch.hpp"
 #include "server/http/lobby.hpp"
+#include "server/http/query.hpp"
 #include "server/http/reply.hpp"
 #include "server/http/waiting_room.hpp"
 
@@ -30,6 +31,11 @@ constexpr int nowhere = -1;
 /// Some more than there are cores, for those that wait for the disk.
 std::size_t most_at_work() {
   return std::max<std::size_t>(8, 2 * std::thread::hardware_concurrency());
+}
+
+/// Long replies are written and compressed by as many as there are cores.
+std::size_t most_carriers_at_work() {
+  return std::max(1u, std::thread::hardware_concurrency());
 }
 
 LobbyLimits lobby_limits(const ListenerOptions& options) {
@@ -117,6 +123,7 @@ class Listener::Impl {
         slow_readers_(options.threads / 2),
         crew_(options.threads, most_at_work()),
         probes_crew_(2, 2),
+        carriers_(options.threads, most_carriers_at_work()),
         lobby_(
             lobby_limits(options),
             [this](Connection& connection) {
@@ -124,11 +131,9 @@ class Listener::Impl {
               return router_.refuses(request);
             },
             [this](std::shared_ptr<Connection> connection, std::shared_ptr<void> body_place) {
-              const bool probes = router_.is_for_probes(connection->reader().message().path);
-              (probes ? probes_crew_ : crew_)
-                  .enqueue([this, connection = std::move(connection), body_place = std::move(body_place)] {
-                    serve(connection, body_place);
-                  });
+              Crew& crew = crew_for(connection->reader().message());
+              crew.enqueue([this, &crew, connection = std::move(connection),
+                            body_place = std::move(body_place)] { serve(crew, connection, body_place); });
             }) {}
 
   ~Impl() {
@@ -156,6 +161,7 @@ class Listener::Impl {
     waiting_room_.stop();
     crew_.shutdown();
     probes_crew_.shutdown();
+    carriers_.shutdown();
   }
 
  private:
@@ -189,8 +195,14 @@ class Listener::Impl {
         std::make_shared<Connection>(socket, stop_event_, message_limits_, slow_readers_, std::move(place)));
   }
 
+  Crew& crew_for(const Message& message) {
+    if (router_.is_for_probes(message.path)) return probes_crew_;
+    return router_.is_long(message.path, read_query(message.query)) ? carriers_ : crew_;
+  }
+
   /// A long body has its place until it was read by the handler, or will not be.
-  void serve(const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_place) {
+  void serve(const Crew& crew, const std::shared_ptr<Connection>& connection,
+             std::shared_ptr<void> body_place) {
     const auto exchange = std::make_shared<Exchange>();
     exchange->connection = connection;
     exchange->message = connection->reader().next();
@@ -204,13 +216,13 @@ class Listener::Impl {
       return body;
     };
     const std::optional<HttpError>& refusal = exchange->message.refusal;
-    const Response response =
+    Response response =
         refusal ? refuse(router_, exchange->request, *refusal) : dispatch(router_, exchange->request);
     exchange->request.read_body = nullptr;
     exchange->message.body = {};
     body_place.reset();
     if (response.later) return keep_waiting(exchange, response.later);
-    reply(*exchange, response);
+    reply(crew, exchange, std::move(response));
   }
 
   void keep_waiting(const std::shared_ptr<Exchange>& exchange,
@@ -219,15 +231,20 @@ class Listener::Impl {
     waiting_room_.add(exchange->connection->socket(), promised->until, promised->subscribe,
                       [this, exchange, promised](bool client_left) {
                         crew_.enqueue([this, exchange, promised, client_left] {
-                          const Response response =
-                              resume(router_, exchange->request, *promised, client_left);
+                          Response response = resume(router_, exchange->request, *promised, client_left);
                           exchange->connection->keep_place(lobby_.take_place());
-                          reply(*exchange, response);
+                          reply(crew_, exchange, std::move(response));
                         });
                       });
   }
 
-  void reply(Exchange& exchange, const Response& response) {
+  /// By the crew at hand, but what is long by those who carry such.
+  void reply(const Crew& crew, const std::shared_ptr<Exchange>& exchange, Response response) {
+    if (!response.write_body || &crew == &carriers_) return send(*exchange, response);
+    carriers_.enqueue([this, exchange, response = std::move(response)] { send(*exchange, response); });
+  }
+
+  void send(Exchange& exchange, const Response& response) {
     const bool more = send_reply(*exchange.connection, exchange.message, response, exchange.request.id);
     if (response.take_connection) return response.take_connection(exchange.connection->give_away());
     if (more) {
@@ -245,6 +262,7 @@ class Listener::Impl {
   Places slow_readers_;
   Crew crew_;
   Crew probes_crew_;  ///< so that probes are answered however much there is to do
+  Crew carriers_;     ///< of long replies, so that short ones do not wait for them
   WaitingRoom waiting_room_;
   Lobby lobby_;
   std::atomic<bool> stopping_ = false;

@@ -106,7 +106,7 @@ bool send_reply(Connection& connection, const Message& message, const Response& 
   const Delimiter delimiter = delimiter_of(message, response);
   const bool last = !message.may_follow || delimiter == Delimiter::close;
   const std::string start = head(response, delimiter, response.body.size(), last);
-  connection.begin_reply();
+  connection.begin_reply(response.in_the_way);
   const bool has_body = message.method != "HEAD" && !response.take_connection;
   const bool sent =
       has_body ? send_body(connection, start, delimiter, response, log_id) : connection.send(start);

@@ -26,6 +26,7 @@ struct Response {
   std::string content_type;
   std::string body;
   BodyWriter write_body;
+  std::function<bool()> in_the_way;  ///< whether others wait for what it holds until it is sent; may be empty
   std::function<void(int socket)> take_connection;  ///< sends the body itself, from the end of the head on
   std::shared_ptr<const LaterReply> later;          ///< then the rest says nothing
   std::vector<std::pair<std::string, std::string>> headers;

@@ -77,6 +77,12 @@ bool Router::is_for_probes(std::string_view path) const {
   });
 }
 
+bool Router::is_long(std::string_view path, const Query& query) const {
+  return std::ranges::any_of(routes_, [&](const Route& route) {
+    return route.is_long != nullptr && match(route.pattern, path) && route.is_long(query);
+  });
+}
+
 Router::Found Router::find(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   Found found;

@@ -24,6 +24,9 @@ struct Route {
   std::vector<std::string> media_types;  ///< of the reply; 406 if the client takes none; empty: not asked
   Handler handler;
   Audience audience = Audience::clients;
+  /// Whether the reply to such a query may be long; it is made and sent where others need not wait for it.
+  /// Empty: no.
+  bool (*is_long)(const Query& query) = nullptr;
 };
 
 /// Told of every reply once it is made, those included that no route has given.
@@ -46,6 +49,8 @@ class Router {
 
   /// Whether a path is for probes.
   bool is_for_probes(std::string_view path) const;
+  /// Whether the reply may be long.
+  bool is_long(std::string_view path, const Query& query) const;
 
   /// Tells browsers which pages may read the reply.
   void mark(const Request& request, Response& response) const { access_.cors.mark(request, response); }

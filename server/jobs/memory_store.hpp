@@ -27,6 +27,7 @@ class MemoryStore : public JobStore {
   JobPage list(const ListQuery& query) const override;
   JobCounts count() const override;
   std::optional<JobResult> result(const std::string& id) override;
+  std::size_t result_memory(const std::string&) const override { return 0; }
   std::size_t damaged() const override { return 0; }
   std::optional<std::string> trouble() override { return std::nullopt; }
   bool outlives_process() const override { return false; }

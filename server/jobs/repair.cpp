@@ -1,12 +1,14 @@
 #include "server/jobs/repair.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include <unistd.h>
 
 #include <sqlite3.h>
 
 #include "server/jobs/job_rows.hpp"
+#include "server/jobs/result_bytes.hpp"
 #include "server/jobs/retention_clock.hpp"
 #include "server/jobs/salvage.hpp"
 #include "server/jobs/schema.hpp"
@@ -166,13 +168,11 @@ class Rows {
       row.executeStep();
       verdict = job_of(row).verdict;
     }
-    std::string findings;
-    auto piece = prepared(database_, "SELECT bytes FROM results WHERE job = ? ORDER BY piece", id);
-    while (piece.executeStep()) findings += bytes_of(piece.getColumn(0));
-    if (findings.empty()) return !verdict.summary && !verdict.last_iteration;
+    ResultBytes bytes(database_, id);
+    if (bytes.size() == 0) return !verdict.summary && !verdict.last_iteration;
     try {
       JobResult result;
-      unpack_findings(findings, result);
+      unpack_findings(std::bind_front(&ResultBytes::read, &bytes), result);
       return true;
     } catch (const std::runtime_error&) {
       return false;

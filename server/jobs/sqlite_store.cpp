@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 
 #include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
 #include "server/jobs/job_rows.hpp"
 #include "server/jobs/repair.hpp"
+#include "server/jobs/result_bytes.hpp"
 #include "server/jobs/schema.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "server/log.hpp"
@@ -459,28 +461,43 @@ JobCounts SqliteStore::count() const {
 std::optional<JobResult> SqliteStore::result(const std::string& id) {
   const std::optional<Job> job = find(id);
   if (!job) return std::nullopt;
+  const bool has_result = job->verdict.summary || job->verdict.last_iteration;
   JobResult result;
-  std::string findings;
+  const char* damaged = nullptr;
   try {
     SQLite::Database connection = connect_to_read(directory_.database(), vfs_);
     // Both from one state of the database.
     const SQLite::Transaction transaction(connection);
     result.problem = problem_of(connection, id);
-    auto row = prepared(connection, "SELECT bytes FROM results WHERE job = ? ORDER BY piece", id);
-    while (row.executeStep()) findings += bytes_of(row.getColumn(0));
+    ResultBytes bytes(connection, id);
+    if (!result.problem) {
+      damaged = "problem";
+    } else if (bytes.size() > 0) {
+      unpack_findings(std::bind_front(&ResultBytes::read, &bytes), result);
+    } else if (has_result) {
+      damaged = "result";
+    }
   } catch (const SQLite::Exception& error) {
-    if (is_damage(error)) return damaged_result(id, "result");
-    rethrow_as_unavailable(error);
-  }
-  const bool has_result = job->verdict.summary || job->verdict.last_iteration;
-  if (!result.problem) return damaged_result(id, "problem");
-  if (findings.empty()) return has_result ? damaged_result(id, "result") : result;
-  try {
-    unpack_findings(findings, result);
-    return result;
+    if (!is_damage(error)) rethrow_as_unavailable(error);
+    damaged = "result";
   } catch (const std::runtime_error&) {
-    return damaged_result(id, "result");
+    damaged = "result";
   }
+  return damaged != nullptr ? damaged_result(id, damaged) : result;
+}
+
+std::size_t SqliteStore::result_memory(const std::string& id) const {
+  return read([&]() -> std::size_t {
+    ResultBytes bytes(reader_, id);
+    if (bytes.size() == 0) return 0;
+    try {
+      return unpacked_size(std::bind_front(&ResultBytes::read, &bytes));
+    } catch (const SQLite::Exception&) {
+      throw;
+    } catch (const std::runtime_error&) {
+      return 0;  // the result will turn out to be damaged
+    }
+  });
 }
 
 /// Nothing if the job was removed meanwhile.

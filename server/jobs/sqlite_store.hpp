@@ -38,6 +38,7 @@ class SqliteStore : public JobStore {
   JobPage list(const ListQuery& query) const override;
   JobCounts count() const override;
   std::optional<JobResult> result(const std::string& id) override;
+  std::size_t result_memory(const std::string& id) const override;
   std::size_t damaged() const override;
   std::optional<std::string> trouble() override;
   bool outlives_process() const override { return true; }

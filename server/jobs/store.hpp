@@ -123,6 +123,10 @@ class JobStore {
   /// from now on, and has no solution.
   virtual std::optional<JobResult> result(const std::string& id) = 0;
 
+  /// About how many bytes of memory result() takes for the one who calls it; 0 where he shares what the store
+  /// has.
+  virtual std::size_t result_memory(const std::string& id) const = 0;
+
   /// How many jobs are kept as `failed` because what was stored of them is damaged.
   virtual std::size_t damaged() const = 0;
 

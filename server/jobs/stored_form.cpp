@@ -1,8 +1,10 @@
 #include "server/jobs/stored_form.hpp"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
 
 #include <zstd.h>
 #include <cereal/archives/portable_binary.hpp>
@@ -19,6 +21,8 @@ std::size_t checked(std::size_t code) {
   if (ZSTD_isError(code)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(code));
   return code;
 }
+
+using Decompression = std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)>;
 
 std::string compress(const std::string& plain) {
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
@@ -39,7 +43,7 @@ std::runtime_error damaged() {
 std::string decompress(const std::string& packed) {
   const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) throw damaged();
-  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  const Decompression context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   std::string plain(std::min<unsigned long long>(size, 64 * packed.size()), '\0');
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   std::size_t done = 0, left = 1;
@@ -55,6 +59,54 @@ std::string decompress(const std::string& packed) {
   if (done != size) throw damaged();
   return plain;
 }
+
+/// What packed bytes hold, while they are read. Their checksum is read last, so that there is input as long
+/// as there is output.
+class PlainBytes : public std::streambuf {
+ public:
+  explicit PlainBytes(const ReadBytes& packed)
+      : packed_(packed), context_(ZSTD_createDCtx(), ZSTD_freeDCtx), size_(unpacked_size(packed)) {}
+
+  /// Reads over all of them. Throws if they are damaged.
+  void check() {
+    while (underflow() != traits_type::eof()) setg(nullptr, nullptr, nullptr);
+  }
+
+ protected:
+  int_type underflow() override {
+    while (!ended_) {
+      if (in_.pos == in_.size) fetch();
+      ZSTD_outBuffer out{plain_.data(), plain_.size(), 0};
+      const std::size_t left = checked(ZSTD_decompressStream(context_.get(), &out, &in_));
+      done_ += out.pos;
+      ended_ = left == 0;
+      if (ended_ && (done_ != size_ || in_.pos != in_.size || fetched_more())) throw damaged();
+      if (out.pos == 0) continue;
+      setg(plain_.data(), plain_.data(), plain_.data() + out.pos);
+      return traits_type::to_int_type(plain_[0]);
+    }
+    return traits_type::eof();
+  }
+
+ private:
+  bool fetched_more() {
+    in_ = {read_.data(), packed_(offset_, read_), 0};
+    offset_ += in_.size;
+    return in_.size > 0;
+  }
+  void fetch() {
+    if (!fetched_more()) throw damaged();
+  }
+
+  const ReadBytes& packed_;
+  const Decompression context_;
+  const std::size_t size_;
+  std::array<char, 128 * 1024> read_, plain_;
+  std::size_t offset_ = 0;  ///< in the packed bytes
+  std::size_t done_ = 0;
+  ZSTD_inBuffer in_{read_.data(), 0, 0};
+  bool ended_ = false;
+};
 
 template <class... Values>
 std::string serialized(const Values&... values) {
@@ -91,8 +143,10 @@ std::string pack_findings(const Ending& ending) {
   return compress(serialized(false, ending.history ? *ending.history : std::vector<Iteration>()));
 }
 
-void unpack_findings(const std::string& bytes, JobResult& result) {
-  std::istringstream stream(decompress(bytes));
+void unpack_findings(const ReadBytes& packed, JobResult& result) {
+  PlainBytes(packed).check();
+  PlainBytes plain(packed);
+  std::istream stream(&plain);
   cereal::PortableBinaryInputArchive archive(stream);
   bool solved = false;
   archive(solved);
@@ -106,6 +160,14 @@ void unpack_findings(const std::string& bytes, JobResult& result) {
     archive(*history);
     result.history = history;
   }
+}
+
+std::size_t unpacked_size(const ReadBytes& packed) {
+  constexpr std::size_t longest_head = 18;  // of a frame, RFC 8878
+  std::array<char, longest_head> head;
+  const auto size = ZSTD_getFrameContentSize(head.data(), packed(0, head));
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) throw damaged();
+  return size;
 }
 
 }  // namespace signorini::server

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <span>
 #include <string>
 
 #include "server/jobs/job.hpp"
@@ -17,8 +20,15 @@ std::string unpack_text(const std::string& bytes);
 std::string pack_verdict(const Verdict& verdict);
 Verdict unpack_verdict(const std::string& bytes);
 
-/// The solution and the history; compressed, with a checksum.
+/// Reads stored bytes from a place on, as many as there is room for, or as are left.
+using ReadBytes = std::function<std::size_t(std::size_t offset, std::span<char> room)>;
+
+/// The solution and the history; compressed, with a checksum. Unpacking takes hardly more memory than what is
+/// unpacked: it reads the bytes twice, first to see that they are not damaged.
 std::string pack_findings(const Ending& ending);
-void unpack_findings(const std::string& bytes, JobResult& result);
+void unpack_findings(const ReadBytes& packed, JobResult& result);
+
+/// About how much memory is taken by what unpack_findings() makes of the bytes, by what they say.
+std::size_t unpacked_size(const ReadBytes& packed);
 
 }  // namespace signorini::server

@@ -16,6 +16,8 @@ namespace {
 
 /// Below this part of the displacement a difference is rounding.
 constexpr double kSmall = 1e-12;
+/// What is fixed may be off a condition that it meets by so much.
+constexpr double kNearly = 1e3 * kSmall;
 /// So many times the largest displacement is out of reach.
 constexpr double kReach = 1e3;
 
@@ -41,8 +43,7 @@ bool turns_slightly(const std::vector<PointConstraint>& constraints, const Mater
     if (constraint.direction.size() == 1) return false;
     const Vector one = constraint.direction, other = constraints[0].direction;
     const double cosine = one.dot(other);
-    return cosine > 0 && !is_same_direction(one, other) &&
-           (1 - cosine * cosine) * ratio_of_stiffnesses(material, x) < 0.5;
+    return cosine > 0 && one != other && (1 - cosine * cosine) * ratio_of_stiffnesses(material, x) < 0.5;
   });
 }
 
@@ -56,8 +57,8 @@ bool jumps(double value, const Interval& limit, double rounding) {
   return is_known(limit) && !(limit.lower() - rounding <= value && value <= limit.upper() + rounding);
 }
 
-/// Of the Taylor coefficients of this order, in s, on the whole edge: infinite where the field is not smooth. Short
-/// parts tell more: they become shorter until less than `small` is left, or as long as that helps.
+/// Of the Taylor coefficients of this order, in s, on the whole edge: infinite where the field is not smooth.
+/// Short parts tell more: they become shorter until less than `small` is left, or as long as that helps.
 double largest_coefficient(const Field& field, const EdgeLine& line, int order, double small) {
   constexpr int kMostCuts = 256;
   double known = std::numeric_limits<double>::infinity();
@@ -88,7 +89,8 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
       clearance_(problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()))),
       points_(displacement_at_corners(problem, solution)),
       scale_(points_.cwiseAbs().maxCoeff()) {
-  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i) clearance_[i] += problem.clearance.rows[i].beyond;
+  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i)
+    clearance_[i] += problem.clearance.rows[i].beyond;
   constrain_points();
   set_middles(coupling);
   for (const BoundaryPart& part : problem.mesh.boundary) {
@@ -231,21 +233,24 @@ void AdmissibleDisplacement::constrain_points() {
   // The normals of a straight line are one, but for rounding, and must not meet in a point.
   const auto constrain = [&](int point, PointConstraint constraint) {
     for (const PointConstraint& known : constraints[point])
-      if (components_ == 2 && is_same_direction(known.direction, constraint.direction))
+      if (components_ == 2 &&
+          is_same_direction(known.direction, constraint.direction, known.rounding + constraint.rounding))
         constraint.direction = known.direction;
     constraints[point].push_back(std::move(constraint));
   };
   for (const BoundaryPart& part : mesh.boundary)
     if (condition_on<Roller>(problem_.problem, part.name))
       for (const int edge : part.edges)
-        for (const int point : mesh.edges[edge]) constrain(point, {mesh.outward_normal(edge), 0, true, true});
+        for (const int point : mesh.edges[edge])
+          constrain(point, {mesh.outward_normal(edge), 0, true, true, mesh.rounding_of_normal(edge)});
   for (const ContactEdge& contact : problem_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
       // A gap that is out of reach rounds nothing that matters.
       if (std::abs(g) < kReach * scale_) scale_ = std::max(scale_, std::abs(g));
       const bool touches = clearance_[contact.rows[k]] <= 0;
-      constrain(mesh.edges[contact.edge][k], {direction(contact), g, touches});
+      constrain(mesh.edges[contact.edge][k],
+                {direction(contact), g, touches, false, mesh.rounding_of_normal(contact.edge)});
     }
   for (const auto& [point, own] : constraints) admit(point, own);
   if (components_ == 2) follow_traces(constraints);
@@ -268,7 +273,8 @@ void AdmissibleDisplacement::follow_traces(std::map<int, std::vector<PointConstr
         if (fixed_points_.contains(point) ||
             turns_slightly(own, problem_.problem.material, mesh.points[point]))
           continue;
-        own.push_back({-direction(contact), clearance_[contact.rows[k]] - gap_at(contact, k), false});
+        own.push_back(
+            {-direction(contact), clearance_[contact.rows[k]] - gap_at(contact, k), false, false, 0});
         if (const auto nearest = nearest_admissible(points_.col(point), own, scale_))
           points_.col(point) = *nearest;
       }
@@ -311,7 +317,7 @@ void AdmissibleDisplacement::admit(int point, std::vector<PointConstraint> const
     for (PointConstraint& constraint : constraints) constraint.equality = constraint.is_roller;
     nearest = nearest_admissible(v, constraints, scale_);
   }
-  if (!nearest || (is_fixed && (*nearest - v).norm() > 1e3 * kSmall * scale_))
+  if (!nearest || (is_fixed && (*nearest - v).norm() > kNearly * scale_))
     refuse("no displacement meets all conditions at " + to_string(problem_.mesh.points[point]));
   else if (!is_fixed)
     points_.col(point) = *nearest;
@@ -359,7 +365,8 @@ double AdmissibleDisplacement::small_coefficient() const {
   return 1e-9 * scale_ / Lift::errors().slope;
 }
 
-/// The rest d of a value is lifted by ρ d(λ_b / ρ), ρ = λ_a + λ_b, with |∇| ≤ (|d| + |d'|) |∇ρ| + |d'| |∇λ_b|.
+/// The rest d of a value is lifted by ρ d(λ_b / ρ), ρ = λ_a + λ_b, with |∇| ≤ (|d| + |d'|) |∇ρ| + |d'|
+/// |∇λ_b|.
 void AdmissibleDisplacement::add_rest(int edge, const EdgeLine& line, const Field& field) {
   if (field.is_constant() || field.is_quadratic_on_edges()) return;
   if (!field.formula()) return refuse(field.name() + " is a function that is known in single points only");
@@ -388,6 +395,10 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
 
 void AdmissibleDisplacement::meet(const ContactEdge& contact) {
   const auto& [a, b] = problem_.mesh.edges[contact.edge];
+  for (int k = 0; k < 2; ++k)
+    if (room(contact, k) < -kNearly * scale_)
+      return refuse("no displacement meets all conditions at " +
+                    to_string(problem_.mesh.points[problem_.mesh.edges[contact.edge][k]]));
   const Eigen::VectorXd n = direction(contact);
   const auto touches = [&](int point, int k) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kSmall * scale_;
@@ -404,10 +415,9 @@ void AdmissibleDisplacement::close(const ContactEdge& contact) {
   const int edge = contact.edge;
   const Eigen::VectorXd n = direction(contact);
   const Field& own = gap(contact);
-  const double ninth =
-      own.formula()
-          ? largest_coefficient(own, EdgeLine(problem_.mesh, edge), Lift::kDegree + 1, small_coefficient())
-          : 0;
+  const double ninth = own.formula() ? largest_coefficient(own, EdgeLine(problem_.mesh, edge),
+                                                           Lift::kDegree + 1, small_coefficient())
+                                     : 0;
   if (!std::isfinite(ninth)) return lower_below(contact);
   middles_.col(edge) += room(contact, 0.5) * n;
   add_lift(edge, [&](double s) -> Eigen::VectorXd { return room(contact, s) * n; });
@@ -425,9 +435,9 @@ void AdmissibleDisplacement::lower_below(const ContactEdge& contact) {
   }
 }
 
-/// With r = g − v_n, r₀ ≥ 0 and r₁ ≥ 0 at the ends. If g is smooth, r = r₀ (1 − s) + r₁ s + s (1 − s) k with k =
-/// −r[0, s, 1] ∈ −½ r'', and r + 4 b s (1 − s) ≥ 0 if −(k + 4 b) ≤ (√r₀ + √r₁)². Else the edge is cut: next to an end
-/// r ≥ r₀ + s min r', and inside r by its values.
+/// With r = g − v_n, r₀ ≥ 0 and r₁ ≥ 0 at the ends. If g is smooth, r = r₀ (1 − s) + r₁ s + s (1 − s) k with
+/// k = −r[0, s, 1] ∈ −½ r'', and r + 4 b s (1 − s) ≥ 0 if −(k + 4 b) ≤ (√r₀ + √r₁)². Else the edge is cut:
+/// next to an end r ≥ r₀ + s min r', and inside r by its values.
 double AdmissibleDisplacement::needed_bubble(const ContactEdge& contact) const {
   const Field& own = gap(contact);
   const EdgeLine line(problem_.mesh, contact.edge);

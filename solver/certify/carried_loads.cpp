@@ -43,7 +43,8 @@ double norm_of_macro_element() {
   return norm;
 }
 
-/// A force of at most this size with a moment of at most this size about the middle of the edge or the triangle.
+/// A force of at most this size with a moment of at most this size about the middle of the edge or the
+/// triangle.
 struct Action {
   double force = 0, moment = 0;
 
@@ -80,7 +81,7 @@ class Carrier {
     if (!carried.is_held) return carried;
     double square = 0;
     for (auto t = order.rbegin(); t != order.rend(); ++t) {
-      if (into[*t].force == 0) continue;
+      if (into[*t].force == 0 && into[*t].moment == 0) continue;
       if (way_out_[*t] >= 0) pass_on(*t, into);
       square += square_on(*t);
     }
@@ -105,7 +106,8 @@ class Carrier {
 
   double extent() const { return std::sqrt(mesh_.area()); }
 
-  /// Lets the tractions on Γ_C and on rollers take the resultant: answers max |r·d|, more than 1 if they do not.
+  /// Lets the tractions on Γ_C and on rollers take the resultant: answers max |r·d|, more than 1 if they do
+  /// not.
   double change_pressure(std::vector<Action>& into) {
     struct Side {
       int edge;
@@ -116,7 +118,8 @@ class Carrier {
     double total = 0, length = 0;
     for (std::size_t i = 0; i < pressure_.at_ends.size(); ++i) {
       const ContactEdge& contact = problem_.clearance.edges[i];
-      const double of_edge = mesh_.length(contact.edge), force = of_edge * (pressure_.at_ends[i][0] + pressure_.at_ends[i][1]) / 2;
+      const double of_edge = mesh_.length(contact.edge),
+                   force = of_edge * (pressure_.at_ends[i][0] + pressure_.at_ends[i][1]) / 2;
       if (force == 0) continue;
       sides.push_back({contact.edge, contact.direction, force});
       total += force;
@@ -126,7 +129,8 @@ class Carrier {
     for (const BoundaryPart& part : mesh_.boundary)
       if (condition_on<Roller>(problem_.problem, part.name))
         for (const int edge : part.edges)
-          sides.push_back({edge, mesh_.outward_normal(edge), length > 0 ? total / length * mesh_.length(edge) : 0});
+          sides.push_back(
+              {edge, mesh_.outward_normal(edge), length > 0 ? total / length * mesh_.length(edge) : 0});
 
     const Eigen::Index motions = motions_along(Point(0, 0), Vector(0, 1)).size();
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(motions, motions);
@@ -135,7 +139,8 @@ class Carrier {
       const Eigen::VectorXd own = motions_along(middle(side.edge), side.direction);
       matrix += side.force / 2 * own * own.transpose();
     }
-    const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double least =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
     double resultant = 0;
     for (int t = 0; t < problem_.triangles(); ++t) {
       const double distance = (mesh_.centroid(t) - mesh_.points[0]).norm() + size(t);
@@ -148,7 +153,8 @@ class Carrier {
       const double own = of_motion * (motions_along(middle(sides[i].edge), sides[i].direction).norm() +
                                       mesh_.length(sides[i].edge) / extent());
       if (i < contacts) change = std::max(change, own);
-      act(sides[i].edge, {own * sides[i].force, own * sides[i].force * mesh_.length(sides[i].edge) / 2}, into);
+      act(sides[i].edge, {own * sides[i].force, own * sides[i].force * mesh_.length(sides[i].edge) / 2},
+          into);
     }
     return change;
   }
@@ -163,8 +169,8 @@ class Carrier {
     return most;
   }
 
-  /// The unknown parts of the load on the triangle and of the traction on its edges, as data of the element. Returns
-  /// whether there are none.
+  /// The unknown parts of the load on the triangle and of the traction on its edges, as data of the element.
+  /// Returns whether there are none.
   bool start(int t, Action& into) {
     const AffineMap map(mesh_.corners(t));
     const double h = size(t), force = problem_.body[t].uncertain_force;
@@ -241,8 +247,10 @@ class Carrier {
     const AffineMap map(mesh_.corners(t));
     const double j = map.jacobian.squaredNorm();
     return problem_.spaces().components == 1
-               ? laws_.whole(t).softest * j / map.determinant * std::pow(norm_of_membrane_element(), 2) * squares_of_data_[t]
-               : laws_.whole(t).softest * j * j / map.determinant * std::pow(norm_of_macro_element(), 2) * squares_of_data_[t];
+               ? laws_.whole(t).softest * j / map.determinant * std::pow(norm_of_membrane_element(), 2) *
+                     squares_of_data_[t]
+               : laws_.whole(t).softest * j * j / map.determinant * std::pow(norm_of_macro_element(), 2) *
+                     squares_of_data_[t];
   }
 
   const Discretization& problem_;

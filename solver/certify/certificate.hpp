@@ -16,7 +16,7 @@ struct Certificate {
 };
 
 /// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium with Πf and Πt
-/// whose pressure p* on Γ_C is nowhere negative: see bound_from().
+/// whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from().
 ///
 /// `coupling`: the unknowns of the trace space.
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,

@@ -13,6 +13,7 @@ struct PointConstraint {
   double bound;
   bool equality;
   bool is_roller = false;
+  double rounding = 0;  ///< the angle by which it may have turned the direction
 };
 
 /// The point nearest to v that meets all constraints up to rounding of the given scale, or nothing if there

@@ -116,10 +116,12 @@ ErrorBound bound_from(const Totals& totals) {
                correction = std::sqrt(totals.balanced_correction + sums.slack) + totals.carried;
   const double p_square = gap * gap + totals.contact, radius = std::sqrt(p_square + totals.contact);
   const double known = sums.known + totals.carried * (2 * std::sqrt(sums.moved) + std::sqrt(sums.span));
-  const double against_second =
-      least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) + oscillation * radius;
+  double product = correction * radius;
+  if (totals.second_counts)
+    product = std::min(product, least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) +
+                                    oscillation * radius);
   bound.value = std::sqrt(totals.contact + (gap * gap + correction * correction + sums.direct_gap + sums.slack) / 2 +
-                          std::min(correction * radius, against_second) + sums.skew + sums.slack);
+                          product + sums.skew + sums.slack);
   const double of_stress = std::sqrt(sums.stress);
   bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
   // The sums are made of some million terms at most.

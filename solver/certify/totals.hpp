@@ -22,6 +22,8 @@ struct Totals {
   double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)² over the triangles
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
   double carried = 0;  ///< CarriedLoads::norm
+  /// The second pair is one with the same uncertain loads: not if p* had to change for them.
+  bool second_counts = true;
   Eigen::VectorXd shares;
 
  private:
@@ -34,30 +36,13 @@ struct Totals {
 double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known,
                           double slack = 0);
 
-/// What the balance of (σ*, v) lacks, f − Πf and t − Πt, some stress τ makes up for: on each triangle alone one with
-/// ‖τ‖_T ≤ o_T, the oscillation (by duality, for ℓ(w) = (f − Πf, w) + <t − Πt, w> ≤ o_T ‖ε(w)‖_T is 0 on rigid motions:
-/// τ = E ε(z) with (ε(z), E ε(w))_T = ℓ(w) for all w), and what carries uncertain loads, ‖τ‖ ≤ κ (carried_loads.hpp).
-/// Nothing is known of τ but that. With e = σ − σ* − τ, b = E ε(u − v) and δ = σ* + τ − sym σ_h, the identity of the
-/// pair (σ* + τ, v) is
+/// The bound of THEORY.md, Theorems 2 and 3, whose proofs stand there: with G and D the norms of σ* − E ε(v) and of
+/// σ* − sym σ_h, both with what makes up for the oscillation o_T of each triangle and for carried loads, c = 2 <p*, g −
+/// v_n> and R² = G² + 2 c,
 ///
-///     ‖e‖² + ‖b‖² + 2 <p*, g − u_n> + 2 <p, g − v_n>  =  ‖e − b‖² + contact  ≤  P²,
-///     ‖e − b‖ = ‖σ* + τ − E ε(v)‖  ≤  G = (Σ (‖σ* − E ε(v)‖_T + o_T)²)^{1/2} + κ,
+///     value²  =  c + (G² + D² + ‖sym σ_h − E ε(v)‖²) / 2 + min(D R, M) + ‖skew σ_h‖²,
 ///
-/// hence ‖e + b‖ ≤ R, R² = 2 contact + G² (Prager, Synge 1947; the sum over triangles as in Braess, Schöberl 2008).
-/// For the stress of the solution, sym σ_h = σ* + τ − δ, with ‖δ‖ ≤ D, of σ* − sym σ_h and o_T as G is,
-///
-///     ‖e + δ‖² + ‖b‖²  =  P² − 2 <p*, g − u_n> − 2 <p, g − v_n> + ‖δ‖² + (e − b, δ) + (e + b, δ),
-///     (e − b, δ)  =  (‖sym σ_h − E ε(v)‖² − ‖e − b‖² − ‖δ‖²) / 2.
-///
-/// The last product is at most D R. But against a second pair (σ*₂ + τ, v₂) the error is known. With w = v −
-/// v₂, η = σ* − σ*₂, which has the pressure π = p* − p₂*, and s = E ε(w) + η it is, by parts,
-///
-///     (e + b, s)  =  (σ* + τ − E ε(v), E ε(w) − η) + 2 <p* − p, w_n> + 2 <π, v_n − u_n>
-///                 ≤  K + 2 <p*, g − u_n> + 2 <p, g − v_n>,
-///     K  =  (σ* − E ε(v), E ε(w) − η) + 2 <p*, w_n> − 2 <π, g − v_n> + Σ (o_T + κ) (2 ‖ε(w)‖_T + ‖s‖_T),
-///
-/// because p₂* ≥ 0 and v₂n ≤ g. So (e + b, δ) − 2 <p*, g − u_n> − 2 <p, g − v_n> ≤ ‖δ − s‖ R + K, and between
-/// the two pairs the same holds for θ s and θ K. The skew part of σ_h is orthogonal to e + δ.
+/// M the least of least_over_the_way() against the second pair. The energies are J(v) and J(v) − (G² + c) / 2.
 ///
 /// Each sum counts with its slack in the direction that makes the bound larger.
 ErrorBound bound_from(const Totals& totals);

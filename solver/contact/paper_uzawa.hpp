@@ -10,7 +10,7 @@
 
 namespace signorini {
 
-/// The paper's Uzawa iteration (section 5, with paper-notes' corrections) to the letter: σ^m solves the
+/// The paper's Uzawa iteration (section 5; solver/README.md has its misprints) to the letter: σ^m solves the
 /// augmented first equation for u^m and λ^m; then
 ///
 ///     u^{m+1} = u^m + ρ Π_V (div σ^m + f),    λ^{m+1} = max(0, λ^m + ρ σ_n^m),

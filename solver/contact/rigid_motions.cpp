@@ -82,6 +82,16 @@ class RigidBody {
     }
   }
 
+  /// Calls visit(direction, point) in the middle of each own edge of Γ_C.
+  template <typename Visit>
+  void in_middles_of_contact(const Visit& visit) const {
+    for (const ContactEdge& contact : problem_.clearance.edges) {
+      const auto& [a, b] = problem_.mesh.edges[contact.edge];
+      if (is_own(contact.edge))
+        visit(contact.direction, Point((problem_.mesh.points[a] + problem_.mesh.points[b]) / 2));
+    }
+  }
+
   /// The work of the loads on each of the three motions, and the sum of the sizes of its terms.
   struct Work {
     Eigen::RowVector3d sum = Eigen::RowVector3d::Zero(), terms = Eigen::RowVector3d::Zero();
@@ -209,6 +219,22 @@ void refuse_sliding(const RigidBody& body, const Motions& free) {
       "; fix a part, or add a roller that prevents it");
 }
 
+/// Means over edges, which are all that a clearance of order 0 has, do not see an edge that turns about its
+/// middle: on a disc they let it turn.
+void refuse_unseen(const Discretization& problem, const RigidBody& body, const Motions& free) {
+  if (problem.spaces().order > 0) return;
+  Conditions conditions;
+  body.in_middles_of_contact(
+      [&](const Vector& direction, const Point& x) { conditions.add(body.frame().along(direction, x)); });
+  const Motions unseen = conditions.fulfilled_by(free);
+  if (unseen.cols() == 0) return;
+  throw SolveError(
+      "nothing holds " + body.name() + " against a " + body.name(upright(unseen.col(0))) +
+      ": no fixed part or roller prevents it, and the nonconforming scheme, which sees a contact "
+      "in the middles of its edges, lets it slide along; use the conforming scheme, fix a part, "
+      "or add a roller that prevents it");
+}
+
 /// What contact and loads say of the free motions of a body, in the coordinates of these.
 struct Balance {
   std::vector<Eigen::VectorXd> normals;  ///< r_n at the ends of the edges of Γ_C
@@ -286,6 +312,7 @@ bool held_by_contact_alone(const Discretization& problem, const RigidBody& body)
   const Motions free = left_free(problem, body);
   if (free.cols() == 0) return false;
   refuse_sliding(body, free);
+  refuse_unseen(problem, body, free);
   const Balance balance = balance_of(body, free);
   refuse_lifting(body, free, balance);
   refuse_floating(body, balance);

@@ -14,8 +14,8 @@ namespace {
 
 /// What the other parts say of the normal displacement at their points, where a contact part begins or ends.
 struct HeldPoints {
-  std::unordered_map<int, Vector> fixed;         ///< u on Γ_D; for a membrane in the first component
-  std::unordered_multimap<int, Vector> rollers;  ///< normals of the roller edges
+  std::unordered_map<int, Vector> fixed;      ///< u on Γ_D; for a membrane in the first component
+  std::unordered_multimap<int, int> rollers;  ///< the roller edges
 
   HeldPoints(const Problem& problem, const Mesh& mesh) {
     for (const BoundaryPart& part : mesh.boundary) {
@@ -37,7 +37,7 @@ struct HeldPoints {
 
   void add_roller(const BoundaryPart& part, const Mesh& mesh) {
     for (const int edge : part.edges)
-      for (const int point : mesh.edges[edge]) rollers.emplace(point, mesh.outward_normal(edge));
+      for (const int point : mesh.edges[edge]) rollers.emplace(point, edge);
   }
 };
 
@@ -64,13 +64,15 @@ class Builder {
 
  private:
   /// What rounds the coordinates of short edges does not turn the direction where the part runs on straight.
-  Vector straightened(Vector direction, const std::array<int, 2>& way) {
+  Vector straightened(Vector direction, int edge, const std::array<int, 2>& way) {
+    const double rounding = mesh_.rounding_of_normal(edge);
     for (const int node : way) {
       const auto [begin, end] = directions_at_node_.equal_range(node);
       for (auto known = begin; known != end; ++known)
-        if (is_same_direction(known->second, direction)) direction = known->second;
+        if (is_same_direction(known->second.direction, direction, known->second.rounding + rounding))
+          direction = known->second.direction;
     }
-    for (const int node : way) directions_at_node_.emplace(node, direction);
+    for (const int node : way) directions_at_node_.emplace(node, DirectionAtNode{direction, rounding});
     return direction;
   }
 
@@ -84,13 +86,14 @@ class Builder {
     };
     const auto gap = [&](double s) { return std::min(true_gap(s), reach_); };
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
-    ContactEdge contact{
-        edge, {}, {}, straightened(contact_direction(mesh_, mesh_.boundary[part], condition, edge), way)};
+    const Vector direction = contact_direction(mesh_, mesh_.boundary[part], condition, edge);
+    ContactEdge contact{edge, {}, {}, straightened(direction, edge, way)};
     if (order_ == 0)
       contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
     else
       for (const int node : way)
-        contact.rows[node == a ? 0 : 1] = row_of_node(part, node, gap(node == a ? 0 : 1), contact.direction);
+        contact.rows[node == a ? 0 : 1] =
+            row_of_node(part, edge, node, gap(node == a ? 0 : 1), contact.direction);
     for (int j = 0; j <= order_; ++j)
       space_.rows[contact.rows[j]].beyond = std::max(0., true_gap(order_ == 0 ? 0.5 : j) - reach_);
     for (int j = 0; j <= order_; ++j) {
@@ -107,25 +110,27 @@ class Builder {
   }
 
   /// Where the direction turns, u_n jumps though u does not, and so does the clearance.
-  int row_of_node(int part, int node, double gap, const Vector& direction) {
+  int row_of_node(int part, int edge, int node, double gap, const Vector& direction) {
     const auto [begin, end] = rows_of_node_.equal_range(node);
     for (auto known = begin; known != end; ++known)
-      if (components_ == 1 || is_same_direction(known->second.direction, direction)) return known->second.row;
+      if (components_ == 1 || known->second.direction == direction) return known->second.row;
     const ClearanceRow row{part, mesh_.points[node], gap};
-    const auto held = held_displacement(node, direction);
+    const auto held = held_displacement(node, edge, direction);
     const int index = held ? held_row(row, *held) : new_row(row);
     rows_of_node_.emplace(node, RowOfNode{index, direction});
     return index;
   }
 
   /// u_n at a node that another part holds: on Γ_D, or between rollers that run on in the same direction.
-  std::optional<double> held_displacement(int node, const Vector& direction) const {
+  std::optional<double> held_displacement(int node, int edge, const Vector& direction) const {
     const auto fixed = held_.fixed.find(node);
     if (fixed != held_.fixed.end())
       return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
     const auto [begin, end] = held_.rollers.equal_range(node);
     for (auto roller = begin; roller != end; ++roller)
-      if (is_same_direction(roller->second, direction)) return 0;
+      if (is_same_direction(mesh_.outward_normal(roller->second), direction,
+                            mesh_.rounding_of_normal(roller->second) + mesh_.rounding_of_normal(edge)))
+        return 0;
     return std::nullopt;
   }
 
@@ -153,8 +158,12 @@ class Builder {
     int row;
     Vector direction;
   };
-  std::unordered_multimap<int, RowOfNode> rows_of_node_;     ///< of the part that is being added
-  std::unordered_multimap<int, Vector> directions_at_node_;  ///< likewise
+  struct DirectionAtNode {
+    Vector direction;
+    double rounding;
+  };
+  std::unordered_multimap<int, RowOfNode> rows_of_node_;              ///< of the part that is being added
+  std::unordered_multimap<int, DirectionAtNode> directions_at_node_;  ///< likewise
   ClearanceSpace space_;
 };
 

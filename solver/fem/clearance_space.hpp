@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -9,9 +10,9 @@
 
 namespace signorini {
 
-/// Of unit vectors, but for what the coordinates of a straight line are rounded by.
-inline bool is_same_direction(const Vector& one, const Vector& other) {
-  return one.dot(other) > 1 - 1e-9;
+/// Of unit vectors that rounding may have turned by this angle, such as the normals along a straight line.
+inline bool is_same_direction(const Vector& one, const Vector& other, double rounding) {
+  return one.dot(other) > 0 && std::abs(one.x() * other.y() - one.y() * other.x()) <= rounding;
 }
 
 /// One function φ_i of the clearance space: the indicator of a contact edge (P0), or the hat of a node of
@@ -35,7 +36,7 @@ struct ContactEdge {
   Vector direction;           ///< the unit vector that u_n is taken along: n unless the condition names one
 };
 
-/// Λ_h, the space of the clearance on Γ_C (paper-notes, "The two schemes").
+/// Λ_h, the space of the clearance on Γ_C (solver/README.md, "The two schemes").
 ///
 /// On an arc the gap is asked at the arc, not at its chord. With x(s) on the chord, X(s) the point of the arc
 /// nearest to it and n(X) the arc's normal, the condition is
@@ -61,8 +62,9 @@ struct ClearanceSpace {
 /// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a node that a contact part shares with a
 /// fixed part is fixed beyond the gap: no displacement meets both.
 ///
-/// `reach`: the largest gap that the space has. A foundation that is farther away is drawn near: as long as nothing
-/// touches it there, the displacement is the same, and it keeps the digits that it would lose beside a large gap.
+/// `reach`: the largest gap that the space has. A foundation that is farther away is drawn near: as long as
+/// nothing touches it there, the displacement is the same, and it keeps the digits that it would lose beside
+/// a large gap.
 ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh,
                                     double reach = std::numeric_limits<double>::infinity());
 

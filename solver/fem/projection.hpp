@@ -10,7 +10,7 @@ namespace signorini {
 /// The integrals behind it are sums over some points of pieces of the triangle. Where f is smooth their
 /// errors are known from Taylor's theorem: f is a polynomial of degree k − 1 but for R_k = max |d^k f(x_T + t
 /// (x − x_T)) / dt^k| / k!, and a rule of degree m integrates f φ with φ of degree j but for 2 R_{m − j + 1}
-/// ∫ |φ|, for its weights are positive.
+/// times the area and max |φ|, for its weights are positive.
 struct Projection {
   using Nodes = Eigen::Matrix<double, 1, 6>;
 

@@ -5,7 +5,7 @@
 
 namespace signorini {
 
-/// The spaces that a scheme pairs (paper-notes, "The two schemes"), each fixed by the one degree k: rows
+/// The spaces that a scheme pairs (solver/README.md, "The two schemes"), each fixed by the one degree k: rows
 /// from RT_k with P_k normal traces, P_k discontinuous displacement, P_k traces on the edges. The clearance
 /// is P0 on each contact edge for k = 0, and P1 for k = 1, continuous along each part but where its direction
 /// turns. An elastic body has two rows and a P1 continuous rotation besides, and for k = 0 the bubble of

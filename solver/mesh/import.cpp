@@ -12,6 +12,7 @@
 #include "mesh/overlaps.hpp"
 #include "mesh/segments.hpp"
 #include "mesh/unit_frame.hpp"
+#include "mesh/wings.hpp"
 
 namespace signorini {
 namespace {
@@ -59,8 +60,13 @@ class Import {
     throw_if_any();
     faults_ = faults_of_overlap(edges, data_.points, scaled_, progress_);
     throw_if_any();
-    Mesh mesh = make_mesh(data_.points, triangles_, names_, segments(edges), {}, progress_);
+    std::vector<Point> points = data_.points;
+    std::vector<std::array<int, 3>> triangles = triangles_;
+    std::vector<std::vector<std::array<int, 2>>> parts = edges_of_parts(edges);
+    const std::string on_wings = separate_wings(points, triangles, parts);
+    Mesh mesh = make_mesh(std::move(points), std::move(triangles), names_, segments(parts), {}, progress_);
     mesh.notes = data_.notes;
+    if (!on_wings.empty()) mesh.notes.push_back(on_wings);
     return mesh;
   }
 
@@ -206,14 +212,20 @@ class Import {
     std::move(bad).append_to(faults_);
   }
 
-  std::vector<BoundarySegment> segments(const EdgeTable& edges) {
+  std::vector<std::vector<std::array<int, 2>>> edges_of_parts(const EdgeTable& edges) {
     std::map<std::array<int, 2>, int> part_of_edge;
-    std::vector<BoundarySegment> all;
+    std::vector<std::vector<std::array<int, 2>>> parts;
     for (int part = 0; part < static_cast<int>(names_.size()); ++part)
-      for (const auto& edge : in_chains(edges_of_part(part, edges, part_of_edge)))
-        all.push_back({edge, part});
+      parts.push_back(edges_of_part(part, edges, part_of_edge));
     check_missing(edges, part_of_edge);
     throw_if_any();
+    return parts;
+  }
+
+  static std::vector<BoundarySegment> segments(const std::vector<std::vector<std::array<int, 2>>>& parts) {
+    std::vector<BoundarySegment> all;
+    for (int part = 0; part < static_cast<int>(parts.size()); ++part)
+      for (const auto& edge : in_chains(parts[part])) all.push_back({edge, part});
     return all;
   }
 

@@ -114,6 +114,14 @@ Vector Mesh::outward_normal(int edge) const {
   return Vector(along.y(), -along.x()).normalized();
 }
 
+double Mesh::rounding_of_normal(int edge) const {
+  // Points that were put on a line by halving or by an intersection are off it by a few units in the last
+  // place.
+  constexpr double rounding = 32 * std::numeric_limits<double>::epsilon();
+  const auto& [a, b] = edges[edge];
+  return rounding * std::max(points[a].cwiseAbs().maxCoeff(), points[b].cwiseAbs().maxCoeff()) / length(edge);
+}
+
 Point Mesh::middle(int edge) const {
   const auto& [a, b] = edges[edge];
   const Point middle = 0.5 * (points[a] + points[b]);

@@ -55,6 +55,8 @@ struct Mesh {
   int local_edge(int triangle, int edge) const;
   /// The unit normal of a boundary edge that points out of the domain.
   Vector outward_normal(int edge) const;
+  /// The angle by which the rounding of its points may turn the normal of an edge.
+  double rounding_of_normal(int edge) const;
   /// The number of the circle of whose arc a boundary edge is a chord, or -1.
   int circle_of(int edge) const { return edge_circles.empty() ? -1 : edge_circles[edge]; }
   /// The middle of an edge; of an arc if the edge is its chord.

@@ -30,7 +30,7 @@ struct Pressure {
 };
 
 /// u_n ≤ gap, σ_n ≤ 0, (u_n − gap) σ_n = 0, σ_T = 0. For an elastic body u_n = u·n and σ_n = n·σn; for the
-/// membrane u_n = −u and σ_n = −σ·n (paper-notes, "One convention"). A negative gap is an initial overlap.
+/// membrane u_n = −u and σ_n = −σ·n (solver/README.md, "The problem"). A negative gap is an initial overlap.
 ///
 /// A direction d of any length, for an elastic body only, takes the place of the normal: u_d = u·d/|d|, and
 /// the reaction acts along −d. For a foundation with a normal of its own, such as a plane, −d is that normal.

@@ -14,7 +14,7 @@ class Report:
     runs: int = 0
     guaranteed: int = 0
     contradictions: list = field(default_factory=list)
-    broken: list = field(default_factory=list)  # promises of README
+    broken: list = field(default_factory=list)  # promises of the pages
     unmet: list = field(default_factory=list)  # (run, reason)
     failures: list = field(default_factory=list)
     notes: list = field(default_factory=list)  # what could not be judged

@@ -28,7 +28,7 @@ Solution solve_exactly(const Problem& problem) {
   return solve(problem, {ActiveSet{}, std::nullopt});
 }
 
-/// The two sides of the identity of design.md, "The certificate", for σ*; and of the left side for σ_h, where
+/// The two sides of the identity of THEORY.md, Theorem 1, for σ*; and of the left side for σ_h, where
 /// finer pairs stand for v, ‖σ − σ_h‖² + 2 (J(v) − J(u)).
 struct Sides {
   double left = 0, right = 0, of_solution = 0, stress_error = 0;

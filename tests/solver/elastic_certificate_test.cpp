@@ -280,6 +280,55 @@ TEST(RandomPunch, TheBoundsOfTheEnergyOfCoarseMeshesEncloseThoseOfFineOnes) {
   EXPECT_LE(not_guaranteed, 4);
 }
 
+/// One edge touches, and has no pressure p* ≥ 0 with the moment of σ_h, though one with its force.
+TEST(Certificate, CarriesALackThatIsAMoment) {
+  Problem problem;
+  problem.scheme = Scheme::conforming;
+  problem.material = YoungPoisson{Field(1), Field(0), Plane::strain};
+  problem.boundary = {{"top", Fixed{VectorField(0, -0.05)}}};
+  for (const char* gap : {"0.06 * x", "0.1 * x", "0.1 * (1 - x)"}) {
+    problem.boundary["bottom"] = Contact{problems::formula(gap)};
+    problem.mesh = MeshRequest(Divisions{1, 1});
+    const ErrorBound coarse = *solved(problem).summary.error_bound;
+    problem.mesh.refine = 4;
+    const ErrorBound fine = *solved(problem).summary.error_bound;
+    EXPECT_TRUE(coarse.guaranteed && fine.guaranteed);
+    EXPECT_LE(coarse.energy_lower, fine.energy_upper) << gap;
+    EXPECT_GE(coarse.energy_upper, fine.energy_lower) << gap;
+  }
+}
+
+/// A block on a chain of twenty edges that bend by so little from one to the next that they touch nearly
+/// along one direction, and its mirror image, which has the same energy.
+TEST(Certificate, OfBendsBetweenShortEdgesHoldsInTheMirror) {
+  const auto bent = [](Scheme scheme, double bend, double shift) {
+    Polygon block;
+    Point x(-1, 0);
+    for (int i = 0; i < 20; ++i) {
+      block.vertices.push_back(x);
+      block.sides.push_back("bottom");
+      x += Vector(0.1, 0.1 * (i - 9.5) * bend);
+    }
+    block.vertices.insert(block.vertices.end(), {x, {1, 1}, {-1, 1}});
+    block.sides.insert(block.sides.end(), {"right", "top", "left"});
+    Problem problem;
+    problem.domain = block;
+    problem.mesh = MeshRequest(LargestEdge{0.2});
+    problem.mesh.refine = 2;
+    problem.scheme = scheme;
+    problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
+    problem.boundary = {{"top", Fixed{VectorField(shift, -1e-3)}}, {"bottom", Contact{}}};
+    return *solved(problem).summary.error_bound;
+  };
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double bend : {1e-7, 4e-5}) {
+      const ErrorBound one = bent(scheme, bend, 1), other = bent(scheme, bend, -1);
+      EXPECT_TRUE(one.guaranteed && other.guaranteed) << bend;
+      EXPECT_LE(one.energy_lower, other.energy_upper) << bend;
+      EXPECT_GE(one.energy_upper, other.energy_lower) << bend;
+    }
+}
+
 TEST(Certificate, OfAnElasticBodyDoesNotDependOnUnits) {
   const ErrorBound plain = *solved(random_punch(3, Scheme::conforming, 0.3, 8)).summary.error_bound;
   Problem problem = random_punch(3, Scheme::conforming, 0.3, 8);

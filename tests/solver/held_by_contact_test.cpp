@@ -1,4 +1,4 @@
-// A membrane without a fixed part: contact alone holds it, or nothing does.
+// A membrane or a body without a fixed part: contact alone holds it, or nothing does.
 #include <gtest/gtest.h>
 
 #include "problems/membrane.hpp"
@@ -71,6 +71,22 @@ TEST(NothingHolds, ALiftingLoadIsDiagnosed) {
 }
 TEST(NothingHolds, NoLoadIsDiagnosed) {
   expect_diagnosis(resting(Scheme::nonconforming, 0, 0.2), "no work at all");
+}
+
+TEST(NothingHolds, ADiscThatMayTurnInItsHoleIsDiagnosed) {
+  Polygon disc{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}, {}, {"rim", "rim", "rim", "rim"}};
+  for (int i = 0; i < 4; ++i) disc.arcs.push_back({0, i, {0, 0}});
+  Problem problem;
+  problem.domain = disc;
+  problem.mesh.fineness = LargestEdge{0.5};
+  problem.scheme = Scheme::nonconforming;
+  problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
+  problem.body = VectorField(0.01, -0.02);
+  problem.boundary = {{"rim", Contact{0.001}}};
+  expect_diagnosis(problem, "middles of its edges");
+  // The corners of the polygon that stands for the disc hold it.
+  problem.scheme = Scheme::conforming;
+  EXPECT_EQ(solve(problem).summary.outcome, Outcome::converged);
 }
 
 TEST(NothingHolds, FreeEverywhereIsAFault) {

@@ -1,10 +1,13 @@
 // Meshes sent by a client: mended, kept in order, or refused with the offending numbers.
 #include "mesh/import.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "mesh/rectangle.hpp"
 #include "mesh_quality.hpp"
+#include "problems/membrane.hpp"
 
 namespace signorini {
 namespace {
@@ -107,6 +110,64 @@ TEST(ImportMesh, AcceptsHolesAndPointsWhereTwoPartsMeet) {
                  {2, 11, 12}},
                 {}};
   for (const double factor : {1.0, 1e9, 1e-9}) EXPECT_EQ(faults_of(scaled(with_boundary(data), factor)), "");
+}
+
+/// Two squares that meet in the point 1 alone, each of four triangles.
+MeshData two_squares() {
+  return {{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {2, 0}, {1, -1}, {2, -1}, {.5, .5}, {1.5, -.5}},
+          {{0, 1, 7}, {1, 2, 7}, {2, 3, 7}, {3, 0, 7}, {5, 6, 8}, {6, 4, 8}, {4, 1, 8}, {1, 5, 8}},
+          {{"above", {{2, 3}, {3, 0}}},
+           {"below", {{5, 6}}},
+           {"free", {{1, 4}, {4, 6}, {1, 5}}},
+           {"contact", {{0, 1}, {1, 2}}}}};
+}
+
+TEST(ImportMesh, GivesEveryWingAPointOfItsOwn) {
+  const Mesh mesh = import_mesh(two_squares());
+  ASSERT_EQ(mesh.points.size(), 10u);
+  EXPECT_EQ(mesh.points[9], mesh.points[1]);
+  for (int t = 0; t < 8; ++t)
+    for (const int point : mesh.triangles[t]) EXPECT_FALSE(point == (t < 4 ? 9 : 1)) << t;
+  ASSERT_EQ(mesh.notes.size(), 1u);
+  EXPECT_NE(mesh.notes[0].find("(1, 0)"), std::string::npos);
+  EXPECT_TRUE(import_mesh(square()).notes.empty());
+}
+
+/// Many points shared by all wings of a chessboard, and one by very many wings.
+TEST(ImportMesh, SeparatesManyWings) {
+  const Mesh board = rectangle_mesh({{0, 0}, {1, 1}}, {41, 41}, Pattern::right);
+  MeshData black{board.points, {}, {}};
+  for (int t = 0; t < static_cast<int>(board.triangles.size()); ++t)
+    if ((t / 2 % 41 + t / 82) % 2 == 0) black.triangles.push_back(board.triangles[t]);
+  const Mesh squares = import_mesh(with_boundary(black));
+  EXPECT_EQ(squares.points.size(), 4 * squares.triangles.size() / 2);
+
+  MeshData star{{{0, 0}}, {}, {}};
+  constexpr int wings = 500;
+  for (int i = 0; i < 2 * wings; ++i) {
+    const double angle = 3.141592653589793 * i / wings;
+    star.points.push_back({std::cos(angle), std::sin(angle)});
+    if (i % 2 == 1) star.triangles.push_back({0, i, i + 1});
+  }
+  EXPECT_EQ(import_mesh(with_boundary(star)).points.size(), 3u * wings);
+}
+
+/// A point does not hold two parts of a membrane together, so that meshes approach the truth.
+TEST(ImportMesh, LetsWingsMoveApart) {
+  Problem problem;
+  problem.domain = two_squares();
+  problem.scheme = Scheme::conforming;
+  problem.body = problems::formula("x > 1 ? 1 : (x + y > 1.2 ? -3 : 2)");
+  problem.boundary = {{"above", Fixed{}}, {"below", Fixed{}}, {"contact", Contact{0.02}}};
+  std::vector<ErrorBound> bounds;
+  for (const int refine : {0, 2, 4}) {
+    problem.mesh.refine = refine;
+    bounds.push_back(*solve(problem, {ActiveSet{}, {}}).summary.error_bound);
+    EXPECT_TRUE(bounds.back().guaranteed);
+    EXPECT_LE(bounds.front().energy_lower, bounds.back().energy_upper);
+    EXPECT_GE(bounds.front().energy_upper, bounds.back().energy_lower);
+  }
+  EXPECT_LT(bounds.back().relative, 0.02);
 }
 
 TEST(ImportMesh, RefusesFaultsByNumber) {

@@ -13,7 +13,7 @@ struct Column {
   Scheme scheme;
   PaperUzawa settings;
   std::array<double, 7> paper;        ///< Table 6.1, iterations 10, 20, …, 70
-  std::array<double, 7> independent;  ///< paper-notes; 0 where those are given to two digits
+  std::array<double, 7> independent;  ///< by a program that shares no code; 0 where it has two digits only
 };
 
 const Column kConforming{Scheme::conforming,

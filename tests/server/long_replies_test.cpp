@@ -1,0 +1,167 @@
+// Large results that many read at once, and slowly: others are answered meanwhile, and memory stays within
+// bounds.
+
+#include "running_service.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include <sys/socket.h>
+
+#include "api/examples.hpp"
+#include "child_process.hpp"
+#include "long_tests.hpp"
+#include "process_figures.hpp"
+#include "raw_client.hpp"
+#include "server/handlers/shared_results.hpp"
+#include "server/http/error.hpp"
+#include "server/jobs/sqlite_store.hpp"
+#include "store_jobs.hpp"
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using nlohmann::json;
+
+constexpr std::size_t megabyte = std::size_t{1} << 20;
+
+/// Does not let the system take much for a client that does not read.
+RawClient deaf_client(int port, const std::string& path) {
+  RawClient client(port);
+  const int little = 4096;
+  setsockopt(client.socket(), SOL_SOCKET, SO_RCVBUF, &little, sizeof(little));
+  client.send("GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  return client;
+}
+
+class LongReplies : public testing::Test {
+ protected:
+  LongReplies() : daemon_({"--data-dir", directory_.path() + "/data"}) {
+    json problem;
+    for (const api::Example& each : api::examples())
+      if (each.name == "paper-nonconforming") problem = json::parse(each.json);
+    const int divisions = sanitized ? 60 : long_tests() ? 400 : 200;
+    problem["mesh"]["divisions"] = {divisions, divisions};
+    problem["solver"] = {{"method", "active_set"}};
+    httplib::Client client("127.0.0.1", port());
+    client.set_read_timeout(200);
+    const auto reply = client.Post("/v1/solves?wait=200&fields=summary", problem.dump(), "application/json");
+    id_ = json::parse(reply->body).at("id");
+  }
+
+  int port() const { return daemon_.port(); }
+  std::string result() const { return "/v1/solves/" + id_ + "/result"; }
+
+  Clock::duration time_of(const std::string& path) const {
+    const auto begin = Clock::now();
+    httplib::Client client("127.0.0.1", port());
+    const auto reply = client.Get(path);
+    EXPECT_TRUE(reply && reply->status == 200) << path;
+    return Clock::now() - begin;
+  }
+
+  const TemporaryDirectory directory_;
+  Daemon daemon_;
+  std::string id_;
+};
+
+/// Once the list took 16 s. What stalls the service stalls it each time, a pause of the machine does not.
+TEST_F(LongReplies, LeaveTheServiceToOthers) {
+  auto list = Clock::duration::max(), health = list;
+  for (int attempt = 0; attempt < 3 && (list > 1s || health > 100ms); ++attempt) {
+    std::atomic<int> reading = 8;
+    std::vector<std::thread> readers;
+    for (int i = 0; i < reading; ++i)
+      readers.emplace_back([&] {
+        httplib::Client client("127.0.0.1", port());
+        client.set_read_timeout(200);
+        const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
+        EXPECT_TRUE(reply && reply->status == 200);
+        --reading;
+      });
+    list = health = {};
+    while (reading > 0) {
+      list = std::max({list, time_of("/v1/solves"), time_of(result() + "?fields=summary")});
+      health = std::max(health, time_of("/healthz"));
+    }
+    for (std::thread& reader : readers) reader.join();
+  }
+  if (sanitized) return;
+  EXPECT_LT(list, 1s);
+  EXPECT_LT(health, 100ms);
+}
+
+/// Once each of them cost a copy of the result, and some more.
+TEST_F(LongReplies, ToManyShareOneResult) {
+  time_of(result());
+  const pid_t process = daemon_.process().id();
+  forget_peak(process);
+  const std::size_t before = figures_of(process).memory;
+  std::vector<RawClient> readers;
+  for (int i = 0; i < 20; ++i) readers.push_back(deaf_client(port(), result()));
+  std::this_thread::sleep_for(sanitized ? 5s : 1s);
+  EXPECT_LT(time_of("/v1/solves"), sanitized ? 10s : 1s);
+  const std::size_t peak = figures_of(process).peak_memory;
+  RecordProperty("memory_mb", static_cast<int>((peak - std::min(peak, before)) / megabyte));
+  if (!sanitized) {
+    EXPECT_LT(peak,
+              before + 20 * megabyte + std::filesystem::file_size(directory_.path() + "/data/jobs.sqlite"));
+  }
+}
+
+/// In a store on the disk, each result of three megabytes.
+class SharedResultsTest : public testing::Test {
+ protected:
+  SharedResultsTest() : store_(directory_.path(), {100, plenty, std::chrono::hours(1)}) {
+    for (const char* id : {"a", "b"}) {
+      store_.add(new_job(id));
+      store_.finish(*store_.claim(), success(3 * megabyte));
+    }
+  }
+
+  const TemporaryDirectory directory_;
+  SqliteStore store_;
+};
+
+TEST_F(SharedResultsTest, AreTheSameForAll) {
+  SharedResults results(store_, megabyte);
+  const auto one = results.get("a"), other = results.get("a");
+  EXPECT_EQ(one->solution, other->solution);
+  EXPECT_EQ(one->problem, other->problem);
+  EXPECT_EQ(one->history, other->history);
+  EXPECT_EQ(one->history->size(), 3u);
+  EXPECT_FALSE(results.get("unknown"));
+}
+
+TEST_F(SharedResultsTest, TakeTheirTurnsWithinTheBudget) {
+  SharedResults results(store_, 4 * megabyte, 60s);
+  auto first = results.get("a");
+  std::atomic<bool> there = false;
+  std::thread second([&] {
+    EXPECT_TRUE(results.get("b")->solution);
+    there = true;
+  });
+  while (!results.are_awaited()) std::this_thread::yield();
+  EXPECT_FALSE(there);
+  first.reset();
+  second.join();
+  EXPECT_FALSE(results.are_awaited());
+}
+
+TEST_F(SharedResultsTest, AreRefusedIfNobodyEnds) {
+  SharedResults results(store_, 4 * megabyte, 10ms);
+  const auto first = results.get("a");
+  try {
+    results.get("b");
+    ADD_FAILURE();
+  } catch (const HttpError& refusal) {
+    EXPECT_EQ(refusal.status, 503);
+  }
+  EXPECT_TRUE(results.get("a")->solution);
+}
+
+}  // namespace
+}  // namespace signorini::server
