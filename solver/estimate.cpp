@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "fem/clearance_space.hpp"
+#include "memory_estimate.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "mesh/rectangle.hpp"
 #include "solve.hpp"
@@ -58,8 +59,8 @@ Counts count(const Problem& problem, const OtherDomain&) {
   return counts;
 }
 
-/// The sizes that a mesh may grow to: the boundary as the root of the number of triangles. Every interior edge
-/// has two of them, and by Euler there is about one point to two.
+/// The sizes that a mesh may grow to: the boundary as the root of the number of triangles. Every interior
+/// edge has two of them, and by Euler there is about one point to two.
 Counts grown(const Counts& start, const Adaptive& goal) {
   const auto triangles = std::max<std::int64_t>(start.triangles, goal.max_triangles);
   const double growth = static_cast<double>(triangles) / static_cast<double>(start.triangles);
@@ -97,9 +98,28 @@ Estimate estimate(const Problem& problem) {
   const double n = static_cast<double>(estimate.system),
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
-  estimate.memory_bytes = 2e7 + 40 * entries + 8 * 4 * contact * contact;
+  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact};
+  estimate.memory_bytes = memory_of_solve(problem, spaces, sizes);
+  estimate.paper_form_bytes = memory_of_paper_form(problem, spaces, sizes);
+  estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
+  estimate.entry_bytes = memory_of_entry(contact);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3);
   return estimate;
+}
+
+Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
+  if (std::holds_alternative<PaperUzawa>(settings.method))
+    estimate.memory_bytes = std::max(estimate.memory_bytes, estimate.paper_form_bytes);
+  // A sweep has a second solution, to which its entries refer.
+  if (entries > 0)
+    estimate.memory_bytes += estimate.solution_bytes + static_cast<double>(entries) * estimate.entry_bytes;
+  return estimate;
+}
+
+double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs) {
+  double bytes = problem.memory_bytes;
+  for (const Estimate& run : runs) bytes = std::max(bytes, problem.solution_bytes + run.memory_bytes);
+  return bytes;
 }
 
 std::vector<Estimate> estimate(const Problem& problem, const Study& study, std::int64_t enough) {

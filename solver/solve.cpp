@@ -2,6 +2,7 @@
 
 #include "adapt.hpp"
 #include "condensed_problem.hpp"
+#include "memory_meter.hpp"
 #include "paper_form.hpp"
 #include "requested_mesh.hpp"
 #include "sweep.hpp"
@@ -71,8 +72,11 @@ Solution solve(const Problem& problem, const std::vector<Variation>& sweep, cons
   if (auto faults = validate(problem, settings); !faults.empty()) throw InvalidProblem(std::move(faults));
   if (auto faults = validate(problem, sweep); !faults.empty()) throw InvalidProblem(std::move(faults));
   Progress progress(observer, settings.time_limit);
+  const MemoryMeter memory;
   try {
-    return solve_by_method(problem, sweep, settings, observer, cache, progress);
+    Solution solution = solve_by_method(problem, sweep, settings, observer, cache, progress);
+    solution.summary.peak_memory_bytes = memory.peak();
+    return solution;
   } catch (const NotPositiveDefinite& failure) {
     throw SolveError(
         std::string(failure.what()) +
