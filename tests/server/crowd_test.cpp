@@ -77,7 +77,9 @@ TEST(Crowd, OfEveryKindLeavesTheServiceToOthers) {
   for (std::size_t i = 0; i < crowd.streams; ++i) {
     streams.emplace_back(daemon.port());
     streams.back().send("GET " + path + "/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    if (streams.size() % 500 == 0) EXPECT_TRUE(admitted(streams)) << i;
+    if (streams.size() % 500 == 0) {
+      EXPECT_TRUE(admitted(streams)) << i;
+    }
   }
   EXPECT_TRUE(admitted(streams));
   const std::string waits =
