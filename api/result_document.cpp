@@ -26,16 +26,13 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
 }
 
 void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::vector<Estimate>& runs) {
-  double memory = estimate.memory_bytes, seconds = estimate.seconds;
-  for (const Estimate& run : runs) {
-    memory = std::max(memory, run.memory_bytes);
-    seconds += run.seconds;
-  }
+  double seconds = estimate.seconds;
+  for (const Estimate& run : runs) seconds += run.seconds;
   out.begin_object().member("valid", true).member("triangles", estimate.triangles);
   write_unknowns(out.key("unknowns"), estimate.unknowns);
   out.member("system", estimate.system);
   out.key("estimated").begin_object();
-  out.member("memory_bytes", std::round(memory)).member("seconds", seconds).end_object();
+  out.member("memory_bytes", std::round(memory_with_study(estimate, runs))).member("seconds", seconds).end_object();
   if (!runs.empty()) out.member("study_runs", runs.size());
   out.end_object();
 }

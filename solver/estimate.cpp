@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "fem/clearance_space.hpp"
+#include "memory_estimate.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "mesh/mesh_sizes.hpp"
 #include "mesh/rectangle.hpp"
@@ -127,7 +128,11 @@ Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::
   const double n = static_cast<double>(estimate.system),
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
-  estimate.memory_bytes = 2e7 + 40 * entries + 8 * 4 * contact * contact;
+  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact};
+  estimate.memory_bytes = memory_of_solve(problem, spaces, sizes);
+  estimate.paper_form_bytes = memory_of_paper_form(problem, spaces, sizes);
+  estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
+  estimate.entry_bytes = memory_of_entry(contact);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3);
   return estimate;
 }
@@ -137,6 +142,21 @@ Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::
 Estimate estimate(const Problem& problem) {
   std::int64_t may_be_made = few_triangles;
   return estimate(problem, PredictedSizes(problem.domain), may_be_made);
+}
+
+Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
+  if (std::holds_alternative<PaperUzawa>(settings.method))
+    estimate.memory_bytes = std::max(estimate.memory_bytes, estimate.paper_form_bytes);
+  // A sweep has a second solution, to which its entries refer.
+  if (entries > 0)
+    estimate.memory_bytes += estimate.solution_bytes + static_cast<double>(entries) * estimate.entry_bytes;
+  return estimate;
+}
+
+double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs) {
+  double bytes = problem.memory_bytes;
+  for (const Estimate& run : runs) bytes = std::max(bytes, problem.solution_bytes + run.memory_bytes);
+  return bytes;
 }
 
 std::vector<Estimate> estimate(const Problem& problem, const Study& study, std::int64_t enough) {

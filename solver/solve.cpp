@@ -4,6 +4,7 @@
 
 #include "adapt.hpp"
 #include "condensed_problem.hpp"
+#include "memory_meter.hpp"
 #include "paper_form.hpp"
 #include "requested_mesh.hpp"
 #include "sweep.hpp"
@@ -72,13 +73,16 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
 Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
                Observer& observer, OperatorCache* cache) {
   Progress progress(observer, settings.time_limit);
+  const MemoryMeter memory;
   progress.enter(Phase::mesh);
   constexpr double all = std::numeric_limits<double>::infinity();
   if (auto faults = validate(problem, settings); !faults.empty()) throw InvalidProblem(std::move(faults));
   if (auto faults = faults_of_sweep(problem, sweep, all, &progress); !faults.empty())
     throw InvalidProblem(std::move(faults));
   try {
-    return solve_by_method(problem, sweep, settings, observer, cache, progress);
+    Solution solution = solve_by_method(problem, sweep, settings, observer, cache, progress);
+    solution.summary.peak_memory_bytes = memory.peak();
+    return solution;
   } catch (const NotPositiveDefinite& failure) {
     throw SolveError(
         std::string(failure.what()) +

@@ -15,9 +15,12 @@ namespace signorini {
 struct Estimate {
   std::int64_t triangles = 0;
   Unknowns unknowns;
-  std::int64_t system = 0;  ///< unknowns of the SPD system that is factored
-  double memory_bytes = 0;  ///< from a fit to measured solves
-  double seconds = 0;       ///< from a fit to measured solves
+  std::int64_t system = 0;      ///< unknowns of the SPD system that is factored
+  double memory_bytes = 0;      ///< that a solve takes at most; see memory_estimate.hpp
+  double paper_form_bytes = 0;  ///< the same by the paper's iteration
+  double solution_bytes = 0;    ///< of them, what its solution keeps
+  double entry_bytes = 0;       ///< what each entry of a sweep adds
+  double seconds = 0;           ///< from a fit to measured solves
 };
 
 /// Why a mesh cannot refine itself in the paper's iteration.
@@ -26,14 +29,21 @@ inline constexpr const char* paper_form_needs_one_mesh =
     "out, "
     "or use active_set";
 
-/// Sizes, exact but for large polygons; memory and time, roughly. Makes no large mesh. For a mesh that refines
-/// itself all of it is for the largest mesh that it may become, and the sizes are rough too.
+/// Sizes, exact but for large polygons; memory, as a bound that is at most twice too large for exact sizes; time,
+/// roughly. Makes no large mesh. For a mesh that refines itself all of it is for the largest mesh that it may become,
+/// and the sizes are rough too.
 Estimate estimate(const Problem& problem);
 
 /// The same for every run of a study, in the order in which they are solved. It ends behind the run with which
 /// they have more stress unknowns together than `enough`.
 std::vector<Estimate> estimate(const Problem& problem, const Study& study,
                                std::int64_t enough = std::numeric_limits<std::int64_t>::max());
+
+/// The same by a method, with so many entries of a sweep.
+Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries = 0);
+
+/// Bytes of the problem and of the runs of its study, which are solved one after another beside its solution.
+double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs);
 
 /// Every fault of the problem, and where the method cannot do what it asks for.
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);

@@ -9,8 +9,6 @@
 #include <set>
 #include <sstream>
 
-#include <sys/resource.h>
-
 #include "certify/certificate.hpp"
 #include "contact/residuals.hpp"
 #include "curve_notes.hpp"
@@ -195,12 +193,6 @@ std::vector<std::string> warnings(const Problem& problem, const Solution& soluti
           ": the error may be larger than the stress itself, and this answer is worth nothing; " + remedy};
 }
 
-std::int64_t peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t{usage.ru_maxrss} * 1024;
-}
-
 void refuse_overflow(const Solution& solution) {
   const bool finite = std::isfinite(solution.summary.energy) && solution.stress.allFinite() &&
                       solution.displacement.allFinite() && std::isfinite(solution.summary.contact.force);
@@ -252,7 +244,6 @@ Solution describe(const Discretization& problem, const Fields& fields, const Set
   summary.unknowns = count_unknowns(problem);
   summary.contact = sum_up(solution.contact);
   summary.timings = timings(progress);
-  summary.peak_memory_bytes = peak_memory_bytes();
   solution.history = progress.take_history();
   refuse_overflow(solution);
   return solution;
@@ -270,7 +261,6 @@ void add_bound(const Problem& problem, Certificate certificate, Solution& soluti
     solution.summary.notes.push_back(std::move(note));
   }
   solution.summary.timings = timings(progress);
-  solution.summary.peak_memory_bytes = peak_memory_bytes();
 }
 
 }  // namespace signorini

@@ -13,8 +13,8 @@
 namespace signorini::server {
 namespace {
 
-/// How many iterations are told in one go.
-constexpr std::size_t most_rows = 64;
+/// How many iterations are told in one go: some kilobytes, which a client who does not take them keeps.
+constexpr std::size_t most_rows = 16;
 
 /// The place in a stream after an event. Iterations count from the start of the solve that did them: a solve
 /// that is begun anew tells all of them again.

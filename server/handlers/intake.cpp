@@ -102,7 +102,7 @@ void require_short_study(const Intake& intake, const Limits& limits) {
 }  // namespace
 
 double Intake::memory() const {
-  return predicted_memory(estimate, runs);
+  return memory_with_study(estimate, runs);
 }
 
 Intake take_in(Service& service, const Request& request) {
@@ -111,11 +111,13 @@ Intake take_in(Service& service, const Request& request) {
   intake.text = read_body(request, limits.max_body_bytes);
   const std::shared_ptr<void> place = place_to_read(service, intake.text);
   intake.request = api::parse_request(intake.text);
-  intake.estimate = estimate(intake.request.problem);
+  intake.estimate =
+      for_solve(estimate(intake.request.problem), intake.request.settings, intake.request.sweep.size());
   require_few_unknowns(intake, limits);
   require_short_sweep(intake, limits);
   if (intake.request.study)
     intake.runs = estimate(intake.request.problem, *intake.request.study, limits.max_unknowns);
+  for (Estimate& run : intake.runs) run = for_solve(run, intake.request.settings);
   require_short_study(intake, limits);
   require_little_memory(intake, limits);
   return intake;

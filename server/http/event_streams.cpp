@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto tick = 50ms;     // how late an event may be
 constexpr auto patience = 30s;  // with a client that takes nothing
-constexpr int turns = 4;        // of one subscriber before the others have theirs
+constexpr int turns = 16;       // of one subscriber before the others have theirs
 
 }  // namespace
 

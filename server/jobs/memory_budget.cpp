@@ -39,6 +39,13 @@ void MemoryBudget::add(const std::string& job, double bytes, const std::string& 
   taken_[job] = {bytes, owner};
 }
 
+double MemoryBudget::left_for(const std::string& job) const {
+  const std::lock_guard lock(mutex_);
+  const auto own = taken_.find(job);
+  const double predicted = own == taken_.end() ? 0 : own->second.bytes;
+  return std::max(predicted, max_bytes_ - (largest() - predicted));
+}
+
 bool MemoryBudget::knows(const std::string& job) const {
   const std::lock_guard lock(mutex_);
   return taken_.contains(job);

@@ -28,6 +28,9 @@ class MemoryBudget {
   /// Counts a job that was admitted elsewhere.
   void add(const std::string& job, double bytes, const std::string& owner = {});
 
+  /// What the job may take, with what the largest of the others leave; more than it was predicted to.
+  double left_for(const std::string& job) const;
+
   bool knows(const std::string& job) const;
   void release(const std::string& job);
 

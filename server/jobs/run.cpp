@@ -1,8 +1,10 @@
 #include "server/jobs/run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
+#include "memory_meter.hpp"
 #include "server/failure.hpp"
 #include "solve.hpp"
 #include "study.hpp"
@@ -38,6 +40,13 @@ Ending failed(std::exception_ptr error, const LiveSolve& live) {
   return ending;
 }
 
+ProblemDetails beyond_its_memory(double bytes) {
+  return {"memory-exceeded", "The solve needed more memory than there is for it",
+          "It was ended when it was to take more than " + std::to_string(std::llround(bytes / 1e6)) +
+              " MB, which is what the limit of the service (--max-memory) and the other solves leave. Take a "
+              "coarser mesh or the nonconforming scheme."};
+}
+
 ProblemDetails incomplete(const std::vector<StudyRow>& study) {
   const auto is_solved = [](const StudyRow& row) { return row.error.empty(); };
   const auto first = std::ranges::find_if_not(study, is_solved);
@@ -67,12 +76,6 @@ Solution solve_request(const api::Request& request, Observer& observer, Operator
   return solution;
 }
 
-double predicted_memory(const Estimate& problem, const std::vector<Estimate>& runs) {
-  double bytes = problem.memory_bytes;
-  for (const Estimate& run : runs) bytes = std::max(bytes, run.memory_bytes);
-  return bytes;
-}
-
 Ending ending_of(Solution solution) {
   const auto shared = std::make_shared<const Solution>(std::move(solution));
   Ending ending;
@@ -91,8 +94,9 @@ Ending ending_of(Solution solution) {
   return ending;
 }
 
-Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live) {
+Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory) {
   if (!claim.problem) return damaged_ending("problem");
+  const MemoryLimit limit(max_memory);
   try {
     const api::Request request = api::parse_request(*claim.problem);
     return ending_of(solve(request, live));
@@ -101,7 +105,9 @@ Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live) {
     ending.status = JobStatus::cancelled;
     return ending;
   } catch (...) {
-    return failed(std::current_exception(), live);
+    Ending ending = failed(std::current_exception(), live);
+    if (limit.was_met()) ending.error = beyond_its_memory(max_memory);
+    return ending;
   }
 }
 

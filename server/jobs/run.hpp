@@ -18,14 +18,12 @@ using SolveFunction = std::function<Solution(const api::Request&, Observer&)>;
 /// solve() of the solver, and the study if there is one.
 Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators);
 
-/// Bytes that a solve takes, about: those of the problem, or of the largest run of its study.
-double predicted_memory(const Estimate& problem, const std::vector<Estimate>& runs);
-
 /// What a solution means for the job: a method that did not converge has failed, but its last iterate is
 /// a result.
 Ending ending_of(Solution solution);
 
-/// Runs a job from its text to its end. Never throws: whatever goes wrong is an ending too.
-Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live);
+/// Runs a job from its text to its end, within so many bytes of memory. Never throws: whatever goes wrong is
+/// an ending too.
+Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory);
 
 }  // namespace signorini::server

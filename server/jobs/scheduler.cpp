@@ -220,7 +220,7 @@ void Scheduler::run_to_end(const Running& running) {
   if (!claim.job.trace.empty()) trace.emplace("trace", claim.job.trace);
   spdlog::info("started");
   count_memory(claim);
-  const Ending ending = run(claim, solve_, *running.live);
+  const Ending ending = run(claim, solve_, *running.live, memory_.left_for(claim.job.id));
   log_end(claim, ending);
   observer_(claim.job, ending);
   const bool small = is_small(ending);
@@ -243,8 +243,10 @@ void Scheduler::count_memory(const Claim& claim) {
   if (memory_.knows(claim.job.id) || !claim.problem) return;
   try {
     const api::Request request = api::parse_request(*claim.problem);
-    const auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
-    memory_.add(claim.job.id, predicted_memory(estimate(request.problem), runs), claim.job.owner);
+    auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
+    for (Estimate& each : runs) each = for_solve(each, request.settings);
+    const Estimate problem = for_solve(estimate(request.problem), request.settings, request.sweep.size());
+    memory_.add(claim.job.id, memory_with_study(problem, runs), claim.job.owner);
   } catch (const std::exception&) {
     // The run says what is wrong with the problem.
   }

@@ -163,5 +163,39 @@ TEST_F(SharedResultsTest, AreRefusedIfNobodyEnds) {
   EXPECT_TRUE(results.get("a")->solution);
 }
 
+class SlowReaders : public ServiceTest {
+ protected:
+  SlowReaders() : ServiceTest(options_in(directory().path())) {}
+
+  static ServiceOptions options_in(const std::string& data_dir) {
+    ServiceOptions options;
+    options.data_dir = data_dir;
+    options.limits.max_result_bytes = megabyte;
+    return options;
+  }
+  static const TemporaryDirectory& directory() {
+    static const TemporaryDirectory made;
+    return made;
+  }
+};
+
+/// They give back what they hold when somebody else wants a result for which there is no memory.
+TEST_F(SlowReaders, AreLeftWhereTheyStandInTheWay) {
+  std::vector<std::string> ids;
+  for (int i = 0; i < 2; ++i)
+    ids.push_back(json::parse(post("huge", "?wait=20&fields=summary")->body).at("id"));
+  const auto path = [&](int i) { return "/v1/solves/" + ids[i] + "/result"; };
+  client_.set_read_timeout(60);
+  ASSERT_GT(get(path(1))->body.size(), 8 * megabyte);
+  std::vector<RawClient> deaf;
+  deaf.push_back(deaf_client(service_.port(), path(0)));
+  std::this_thread::sleep_for(500ms);
+  const auto begin = Clock::now();
+  EXPECT_EQ(get(path(1))->status, 200);
+  EXPECT_LT(Clock::now() - begin, sanitized ? 60s : 20s);
+  EXPECT_TRUE(listen_until(deaf, 20s, [&] { return deaf[0].closed(); }));
+  EXPECT_LT(deaf[0].heard().size(), 8 * megabyte);
+}
+
 }  // namespace
 }  // namespace signorini::server

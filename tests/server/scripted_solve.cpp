@@ -101,6 +101,7 @@ Solution scripted_solve(const api::Request& request, Observer& observer) {
   if (title == "short") iterate_until(now + 200ms, observer);
   if (title == "busy") iterate_often(20'000, observer);
   if (title == "large") return solution_of(100'000);
+  if (title == "huge") return solution_of(600'000);
   if (title == "touches") return with_contact(1);
   if (title == "elastic") return with_contact(2);
   if (title == "diverges") return diverged();

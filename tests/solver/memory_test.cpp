@@ -1,0 +1,137 @@
+// The predicted memory bounds what a solve takes, and is hardly ever more than twice as much.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "memory_meter.hpp"
+#include "problems/elasticity.hpp"
+#include "problems/families.hpp"
+#include "problems/sanitized.hpp"
+
+namespace signorini {
+namespace {
+
+bool long_tests() {
+  return std::getenv("SIGNORINI_LONG_TESTS") != nullptr;
+}
+
+Problem elastic(Scheme scheme, int x, int y) {
+  Problem problem = problems::pressed_block(scheme, Pattern::right, 0.3, 1);
+  problem.mesh.fineness = Divisions{x, y};
+  return problem;
+}
+
+Problem membrane(Scheme scheme, int x, int y) {
+  Problem problem = problems::paper(scheme, x);
+  problem.mesh.fineness = Divisions{x, y};
+  return problem;
+}
+
+Problem in_polygon(Problem problem, double size) {
+  problem.domain = Polygon{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {}, {"bottom", "right", "top", "left"}};
+  problem.mesh = {};
+  problem.mesh.fineness = LargestEdge{size};
+  return problem;
+}
+
+void expect_bound(const Problem& problem, const Settings& settings = {ActiveSet{}, std::nullopt}) {
+  const double predicted = for_solve(estimate(problem), settings).memory_bytes;
+  const auto peak = static_cast<double>(solve(problem, settings).summary.peak_memory_bytes);
+  // Some of the tables are for pressures that change and shapes that come up often.
+  constexpr double tables = 2e6;
+  EXPECT_LE(peak, predicted);
+  EXPECT_GE(peak + tables, predicted / 2);
+}
+
+class Memory : public testing::TestWithParam<Scheme> {
+ protected:
+  void SetUp() override {
+    if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Schemes, Memory, testing::Values(Scheme::conforming, Scheme::nonconforming),
+                         [](const auto& of) {
+                           return of.param == Scheme::conforming ? "conforming" : "nonconforming";
+                         });
+
+TEST_P(Memory, OfASolveIsFarFromNeitherSide) {
+  const std::vector<int> sizes =
+      long_tests() ? std::vector{12, 32, 50, 64, 100, 128, 200, 300} : std::vector{12, 32, 50};
+  for (const int n : sizes) {
+    SCOPED_TRACE(n);
+    expect_bound(membrane(GetParam(), n, n));
+    if (n < 300) expect_bound(elastic(GetParam(), n, n));
+  }
+}
+
+TEST_P(Memory, OfLongBodiesCountsTheirContact) {
+  const int x = long_tests() ? 3000 : 400;
+  Problem strip = membrane(GetParam(), x, 4);
+  std::get<Rectangle>(strip.domain).size.x() = x / 4.;
+  expect_bound(strip);
+  Problem beam = elastic(GetParam(), x, 4);
+  std::get<Rectangle>(beam.domain).size.x() = x / 4.;
+  expect_bound(beam);
+}
+
+TEST_P(Memory, OfOtherMeshesAndLaws) {
+  const double size = long_tests() ? 0.01 : 0.05;
+  expect_bound(in_polygon(membrane(GetParam(), 1, 1), size));
+  expect_bound(in_polygon(elastic(GetParam(), 1, 1), size));
+  Problem varying = elastic(GetParam(), 40, 40);
+  varying.material = YoungPoisson{problems::formula("3 + x"), Field(0.3), Plane::strain};
+  varying.body = VectorField(problems::formula("sin(x)"), Field(-1));
+  expect_bound(varying);
+}
+
+TEST_P(Memory, OfASweepCountsItsEntries) {
+  const Problem problem = membrane(GetParam(), 32, 32);
+  const std::size_t entries = long_tests() ? 10'000 : 1000;
+  std::vector<Variation> sweep;
+  for (std::size_t i = 0; i < entries; ++i) {
+    sweep.push_back({"", problem.body, problem.boundary, "same"});
+    std::get<Contact>(sweep.back().boundary.at("bottom")).gap = 1e-4 * static_cast<double>(i);
+  }
+  problems::Shelf shelf;
+  Observer indifferent;
+  const Solution solution = solve(problem, sweep, {ActiveSet{}, std::nullopt}, indifferent, shelf);
+  const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}, entries).memory_bytes;
+  const auto peak = static_cast<double>(solution.summary.peak_memory_bytes);
+  EXPECT_LE(peak, predicted);
+  EXPECT_GE(peak, predicted / 2);
+}
+
+TEST_P(Memory, OfThePapersIteration) {
+  PaperUzawa few;
+  few.rho = 1e-3;
+  few.augmentation = 1;
+  few.max_iterations = 5;
+  const int n = long_tests() ? 100 : 24;
+  expect_bound(membrane(GetParam(), n, n), {few, std::nullopt});
+  expect_bound(elastic(GetParam(), n, n), {few, std::nullopt});
+}
+
+/// It may stop long before it has the triangles that it may have.
+TEST_P(Memory, OfAMeshThatRefinesItselfIsNotExceeded) {
+  Problem problem = membrane(GetParam(), 8, 8);
+  problem.mesh.adaptive = Adaptive{1e-6, long_tests() ? 40'000 : 3000};
+  EXPECT_LE(static_cast<double>(solve(problem).summary.peak_memory_bytes), estimate(problem).memory_bytes);
+}
+
+TEST(MemoryLimit, EndsASolveBeyondIt) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const Problem problem = membrane(Scheme::conforming, 64, 64);
+  const double predicted = estimate(problem).memory_bytes;
+  {
+    const MemoryLimit enough(predicted);
+    solve(problem);
+    EXPECT_FALSE(enough.was_met());
+  }
+  const MemoryLimit little(predicted / 4);
+  EXPECT_ANY_THROW(solve(problem));
+  EXPECT_TRUE(little.was_met());
+}
+
+}  // namespace
+}  // namespace signorini
