@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include <sys/socket.h>
 
@@ -68,30 +69,37 @@ class LongReplies : public testing::Test {
   std::string id_;
 };
 
-/// Once the list took 16 s. What stalls the service stalls it each time, a pause of the machine does not.
+/// What nine in ten of the times are at most: what stalls the service shows in many, a pause of the machine
+/// in few.
+Clock::duration most_are_within(std::vector<Clock::duration> times) {
+  const auto place = times.begin() + static_cast<std::ptrdiff_t>(9 * times.size() / 10);
+  std::ranges::nth_element(times, place);
+  return *place;
+}
+
+/// Once the list took 16 s.
 TEST_F(LongReplies, LeaveTheServiceToOthers) {
-  auto list = Clock::duration::max(), health = list;
-  for (int attempt = 0; attempt < 3 && (list > 1s || health > 100ms); ++attempt) {
-    std::atomic<int> reading = 8;
-    std::vector<std::thread> readers;
-    for (int i = 0; i < reading; ++i)
-      readers.emplace_back([&] {
-        httplib::Client client("127.0.0.1", port());
-        client.set_read_timeout(200);
-        const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
-        EXPECT_TRUE(reply && reply->status == 200);
-        --reading;
-      });
-    list = health = {};
-    while (reading > 0) {
-      list = std::max({list, time_of("/v1/solves"), time_of(result() + "?fields=summary")});
-      health = std::max(health, time_of("/healthz"));
-    }
-    for (std::thread& reader : readers) reader.join();
-  }
+  std::atomic<int> reading = 8;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 8; ++i)
+    readers.emplace_back([&] {
+      httplib::Client client("127.0.0.1", port());
+      client.set_read_timeout(200);
+      const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
+      EXPECT_TRUE(reply && reply->status == 200);
+      --reading;
+    });
+  std::vector<Clock::duration> list, summary, health;
+  do {
+    list.push_back(time_of("/v1/solves"));
+    summary.push_back(time_of(result() + "?fields=summary"));
+    health.push_back(time_of("/healthz"));
+  } while (reading > 0);
+  for (std::thread& reader : readers) reader.join();
   if (sanitized) return;
-  EXPECT_LT(list, 1s);
-  EXPECT_LT(health, 100ms);
+  EXPECT_LT(most_are_within(list), 1s);
+  EXPECT_LT(most_are_within(summary), 1s);
+  EXPECT_LT(most_are_within(health), 100ms);
 }
 
 /// Once each of them cost a copy of the result, and some more.
