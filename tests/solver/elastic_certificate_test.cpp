@@ -263,7 +263,7 @@ Problem random_punch(unsigned seed, Scheme scheme, double poisson, int n) {
 /// Where one node alone touches, no pressure on its two edges need have the force and the moment of σ_h.
 TEST(RandomPunch, TheBoundsOfTheEnergyOfCoarseMeshesEncloseThoseOfFineOnes) {
   int not_guaranteed = 0;
-  for (unsigned seed = 1; seed <= 10; ++seed)
+  for (unsigned seed = 1; seed <= (sanitized ? 2 : 10); ++seed)
     for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
       for (const double poisson : {0.3, 0.4999}) {
         const ErrorBound coarse = *solved(random_punch(seed, scheme, poisson, 6)).summary.error_bound;
