@@ -10,8 +10,8 @@
 
 #include <sys/socket.h>
 
-#include "api/examples.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
@@ -27,8 +27,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-constexpr std::size_t megabyte = std::size_t{1} << 20;
-
 /// Does not let the system take much for a client that does not read.
 RawClient deaf_client(int port, const std::string& path) {
   RawClient client(port);
@@ -41,12 +39,7 @@ RawClient deaf_client(int port, const std::string& path) {
 class LongReplies : public testing::Test {
  protected:
   LongReplies() : daemon_({"--data-dir", directory_.path() + "/data"}) {
-    json problem;
-    for (const api::Example& each : api::examples())
-      if (each.name == "paper-nonconforming") problem = json::parse(each.json);
-    const int divisions = sanitized ? 60 : long_tests() ? 400 : 200;
-    problem["mesh"]["divisions"] = {divisions, divisions};
-    problem["solver"] = {{"method", "active_set"}};
+    const json problem = paper_problem(sanitized ? 60 : long_tests() ? 400 : 200);
     httplib::Client client("127.0.0.1", port());
     client.set_read_timeout(200);
     const auto reply = client.Post("/v1/solves?wait=200&fields=summary", problem.dump(), "application/json");
