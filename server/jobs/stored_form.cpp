@@ -22,8 +22,6 @@ std::size_t checked(std::size_t code) {
   return code;
 }
 
-using Decompression = std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)>;
-
 std::string compress(const std::string& plain) {
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   checked(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, compression_level));
@@ -36,28 +34,6 @@ std::string compress(const std::string& plain) {
 
 std::runtime_error damaged() {
   return std::runtime_error("stored bytes are damaged");
-}
-
-/// The size that damaged bytes claim may be any: room is made as what they hold comes to need it, which
-/// doubles hardly ever do.
-std::string decompress(const std::string& packed) {
-  const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) throw damaged();
-  const Decompression context(ZSTD_createDCtx(), ZSTD_freeDCtx);
-  std::string plain(std::min<unsigned long long>(size, 64 * packed.size()), '\0');
-  ZSTD_inBuffer in{packed.data(), packed.size(), 0};
-  std::size_t done = 0, left = 1;
-  while (left > 0) {
-    if (done == plain.size() && done < size) plain.resize(std::min<unsigned long long>(size, 2 * done));
-    ZSTD_outBuffer out{plain.data(), plain.size(), done};
-    const std::size_t read_before = in.pos;
-    left = checked(ZSTD_decompressStream(context.get(), &out, &in));
-    const bool stuck = in.pos == read_before && out.pos == done;
-    done = out.pos;
-    if (stuck && (in.pos == in.size || done == size)) throw damaged();
-  }
-  if (done != size) throw damaged();
-  return plain;
 }
 
 /// What packed bytes hold, while they are read. Their checksum is read last, so that there is input as long
@@ -99,7 +75,7 @@ class PlainBytes : public std::streambuf {
   }
 
   const ReadBytes& packed_;
-  const Decompression context_;
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context_;
   const std::size_t size_;
   std::array<char, 128 * 1024> read_, plain_;
   std::size_t offset_ = 0;  ///< in the packed bytes
@@ -107,6 +83,19 @@ class PlainBytes : public std::streambuf {
   ZSTD_inBuffer in_{read_.data(), 0, 0};
   bool ended_ = false;
 };
+
+/// The size that damaged bytes claim may be any: room is made for what they hold.
+std::string decompress(const std::string& packed) {
+  const ReadBytes read = [&packed](std::size_t offset, std::span<char> room) {
+    return packed.copy(room.data(), room.size(), offset);
+  };
+  PlainBytes bytes(read);
+  std::string plain;
+  std::array<char, 16 * 1024> some;
+  while (const auto count = bytes.sgetn(some.data(), some.size()))
+    plain.append(some.data(), static_cast<std::size_t>(count));
+  return plain;
+}
 
 template <class... Values>
 std::string serialized(const Values&... values) {

@@ -222,6 +222,10 @@ void AdmissibleDisplacement::refuse(const std::string& reason) {
   if (std::ranges::find(unmet_, reason) == unmet_.end()) unmet_.push_back(reason);
 }
 
+void AdmissibleDisplacement::refuse_point(int point) {
+  refuse("no displacement meets all conditions at " + to_string(problem_.mesh.points[point]));
+}
+
 /// The points of Γ_D get u_D; those of Γ_C and of rollers the nearest value that their edges allow.
 void AdmissibleDisplacement::constrain_points() {
   const Mesh& mesh = problem_.mesh;
@@ -273,8 +277,7 @@ void AdmissibleDisplacement::follow_traces(std::map<int, std::vector<PointConstr
         if (fixed_points_.contains(point) ||
             turns_slightly(own, problem_.problem.material, mesh.points[point]))
           continue;
-        own.push_back(
-            {-direction(contact), clearance_[contact.rows[k]] - gap_at(contact, k), false, false, 0});
+        own.push_back({-direction(contact), clearance_[contact.rows[k]] - gap_at(contact, k), false});
         if (const auto nearest = nearest_admissible(points_.col(point), own, scale_))
           points_.col(point) = *nearest;
       }
@@ -318,7 +321,7 @@ void AdmissibleDisplacement::admit(int point, std::vector<PointConstraint> const
     nearest = nearest_admissible(v, constraints, scale_);
   }
   if (!nearest || (is_fixed && (*nearest - v).norm() > kNearly * scale_))
-    refuse("no displacement meets all conditions at " + to_string(problem_.mesh.points[point]));
+    refuse_point(point);
   else if (!is_fixed)
     points_.col(point) = *nearest;
 }
@@ -395,10 +398,8 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
 
 void AdmissibleDisplacement::meet(const ContactEdge& contact) {
   const auto& [a, b] = problem_.mesh.edges[contact.edge];
-  for (int k = 0; k < 2; ++k)
-    if (room(contact, k) < -kNearly * scale_)
-      return refuse("no displacement meets all conditions at " +
-                    to_string(problem_.mesh.points[problem_.mesh.edges[contact.edge][k]]));
+  for (const int k : {0, 1})
+    if (room(contact, k) < -kNearly * scale_) return refuse_point(k == 0 ? a : b);
   const Eigen::VectorXd n = direction(contact);
   const auto touches = [&](int point, int k) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kSmall * scale_;

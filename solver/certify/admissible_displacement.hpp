@@ -96,6 +96,7 @@ class AdmissibleDisplacement {
   double needed_bubble(const ContactEdge& contact) const;
   void add_lift(int edge, const Values& d);
   void refuse(const std::string& reason);
+  void refuse_point(int point);
 
   const Field& gap(const ContactEdge& contact) const;
   double gap_at(const ContactEdge& contact, double s) const;

@@ -82,14 +82,11 @@ class RigidBody {
     }
   }
 
-  /// Calls visit(direction, point) in the middle of each own edge of Γ_C.
+  /// Calls visit(direction, point) in the middle of each own edge of Γ_C, where clearances of order 0 are.
   template <typename Visit>
   void in_middles_of_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : problem_.clearance.edges) {
-      const auto& [a, b] = problem_.mesh.edges[contact.edge];
-      if (is_own(contact.edge))
-        visit(contact.direction, Point((problem_.mesh.points[a] + problem_.mesh.points[b]) / 2));
-    }
+    for (const ContactEdge& contact : problem_.clearance.edges)
+      if (is_own(contact.edge)) visit(contact.direction, problem_.clearance.rows[contact.rows[0]].point);
   }
 
   /// The work of the loads on each of the three motions, and the sum of the sizes of its terms.

@@ -61,10 +61,9 @@ class Import {
     faults_ = faults_of_overlap(edges, data_.points, scaled_, progress_);
     throw_if_any();
     std::vector<Point> points = data_.points;
-    std::vector<std::array<int, 3>> triangles = triangles_;
     std::vector<std::vector<std::array<int, 2>>> parts = edges_of_parts(edges);
-    const std::string on_wings = separate_wings(points, triangles, parts);
-    Mesh mesh = make_mesh(std::move(points), std::move(triangles), names_, segments(parts), {}, progress_);
+    const std::string on_wings = separate_wings(points, triangles_, parts);
+    Mesh mesh = make_mesh(std::move(points), std::move(triangles_), names_, segments(parts), {}, progress_);
     mesh.notes = data_.notes;
     if (!on_wings.empty()) mesh.notes.push_back(on_wings);
     return mesh;

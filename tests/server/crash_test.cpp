@@ -11,8 +11,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "api/examples.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
@@ -31,14 +31,7 @@ int kills() {
 
 /// Takes a millisecond, or some tens of them, so that some solves run whenever the service is killed.
 std::string problem(bool large) {
-  json document = json::parse(api::examples().front().json);
-  for (const api::Example& each : api::examples()) {
-    if (each.name == "paper-nonconforming") document = json::parse(each.json);
-  }
-  document["solver"] = {{"method", "active_set"}};
-  const int divisions = large ? 48 : 4;
-  document["mesh"]["divisions"] = {divisions, divisions};
-  return document.dump();
+  return paper_problem(large ? 48 : 4).dump();
 }
 
 /// What the clients were told of one solve.

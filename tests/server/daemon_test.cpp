@@ -1,4 +1,5 @@
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "running_service.hpp"
 
 #include <cmath>
@@ -21,22 +22,6 @@ constexpr auto soon = 10s;  // the checks of a solve lie further apart
 #else
 constexpr auto soon = 1s;
 #endif
-
-json example(const std::string& wanted) {
-  for (const api::Example& each : api::examples()) {
-    if (each.name == wanted) return json::parse(each.json);
-  }
-  ADD_FAILURE() << "no example " << wanted;
-  return {};
-}
-
-/// Most of its time goes into one factorisation.
-json large_problem(int divisions) {
-  json problem = example("paper-nonconforming");
-  problem["mesh"]["divisions"] = {divisions, divisions};
-  problem["solver"] = {{"method", "active_set"}};
-  return problem;
-}
 
 class DaemonTest : public testing::Test {
  protected:
@@ -118,7 +103,7 @@ TEST_F(DaemonTest, ASweepServesWhatItCouldSolve) {
 }
 
 TEST_F(DaemonTest, CancelsASweepBetweenItsEntries) {
-  json problem = large_problem(96);
+  json problem = paper_problem(96);
   problem["sweep"] = json::array();
   for (int i = 0; i < 5000; ++i) problem["sweep"].push_back({{"load", {{"body", -1 - i}}}});
   const std::string id = submit(problem);
@@ -210,7 +195,7 @@ TEST_F(DaemonTest, PostedExamplesReproduceTheTableOfThePaper) {
 
 TEST_F(DaemonTest, SolvesTheProblemOfThePaperOn256Squares) {
   const auto reply =
-      client_.Post("/v1/solves?wait=100&fields=summary", large_problem(256).dump(), "application/json");
+      client_.Post("/v1/solves?wait=100&fields=summary", paper_problem(256).dump(), "application/json");
   ASSERT_EQ(reply->status, 200);
   const json result = json::parse(reply->body);
   EXPECT_EQ(result.at("status"), "succeeded");
@@ -219,7 +204,7 @@ TEST_F(DaemonTest, SolvesTheProblemOfThePaperOn256Squares) {
 
 TEST_F(DaemonTest, CancelsALargeSolveWithinASecond) {
   for (const char* phase : {"assemble", "factorize"}) {
-    const std::string id = submit(large_problem(768));
+    const std::string id = submit(paper_problem(768));
     wait_for_phase(id, phase);
     const auto begin = Clock::now();
     EXPECT_EQ(client_.Delete("/v1/solves/" + id)->status, 202);
@@ -243,14 +228,14 @@ void wait_for_line(Daemon& daemon, const std::string& line) {
 }
 
 TEST_F(DaemonTest, DrainsUntilTheRunningSolvesHaveEnded) {
-  const std::string id = submit(large_problem(192));
+  const std::string id = submit(paper_problem(192));
   wait_for_phase(id, "assemble");
   daemon_.process().signal(SIGTERM);
   wait_for_line(daemon_, "draining");
   // Solved meanwhile, on a fast machine; then there is nobody to ask any more.
   const auto ready = client_.Get("/readyz");
   EXPECT_EQ(ready ? ready->status : 503, 503);
-  const auto refused = post(large_problem(4), "");
+  const auto refused = post(paper_problem(4), "");
   EXPECT_EQ(refused ? refused->status : 503, 503);
   EXPECT_EQ(daemon_.process().wait(60s), 0);
   EXPECT_NE(daemon_.process().standard_error().find("converged"), std::string::npos)
@@ -258,7 +243,7 @@ TEST_F(DaemonTest, DrainsUntilTheRunningSolvesHaveEnded) {
 }
 
 TEST_F(DaemonTest, ASecondSignalHurriesThoseThatDrain) {
-  const std::string id = submit(large_problem(768));
+  const std::string id = submit(paper_problem(768));
   wait_for_phase(id, "assemble");
   daemon_.process().signal(SIGTERM);
   wait_for_line(daemon_, "draining");
@@ -276,7 +261,7 @@ TEST(Drain, GivesSolvesBackWhenItsTimeIsOver) {
     Daemon daemon(flags);
     httplib::Client client("127.0.0.1", daemon.port());
     if (start == 0)
-      id = json::parse(client.Post("/v1/solves", large_problem(768).dump(), "application/json")->body)
+      id = json::parse(client.Post("/v1/solves", paper_problem(768).dump(), "application/json")->body)
                .at("id");
     wait_for_line(daemon, "job=" + id + " started");
     daemon.process().signal(SIGTERM);
@@ -443,7 +428,7 @@ TEST(StudyCommand, NeedsAStudy) {
 }
 
 TEST(SolveCommand, EndsOnCtrlC) {
-  ChildProcess process({"solve", "-"}, large_problem(1024).dump());
+  ChildProcess process({"solve", "-"}, paper_problem(1024).dump());
   std::this_thread::sleep_for(500ms);
   process.signal(SIGINT);
   EXPECT_EQ(process.wait(10 * soon), 1);

@@ -15,9 +15,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "api/examples.hpp"
 #include "api/gzip.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
@@ -29,15 +29,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-constexpr std::size_t megabyte = std::size_t{1} << 20;
 constexpr std::size_t body_limit = 4 * megabyte;
-
-std::string example(const std::string& wanted) {
-  for (const api::Example& each : api::examples()) {
-    if (each.name == wanted) return std::string(each.json);
-  }
-  return {};
-}
 
 std::string post_head(const std::string& headers) {
   return "POST /v1/solves HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n" + headers +
@@ -183,7 +175,8 @@ TEST_F(Hostile, CountlessHeaders) {
 
 TEST_F(Hostile, CountlessRanges) {
   httplib::Client client("127.0.0.1", port());
-  const auto solved = client.Post("/v1/solves?wait=100", example("paper-nonconforming"), "application/json");
+  const auto solved =
+      client.Post("/v1/solves?wait=100", example("paper-nonconforming").dump(), "application/json");
   ASSERT_EQ(solved->status, 200);
   const std::string path = "/v1/solves/" + std::string(json::parse(solved->body).at("id")) + "/result";
   withstand([&] {
@@ -199,7 +192,7 @@ TEST_F(Hostile, CountlessRanges) {
 TEST_F(Hostile, BrotliForALargeReply) {
   httplib::Client client("127.0.0.1", port());
   client.set_read_timeout(60);
-  json problem = json::parse(example("paper-nonconforming"));
+  json problem = example("paper-nonconforming");
   problem["mesh"]["divisions"] = {160, 160};
   problem["solver"] = {{"method", "active_set"}};
   const auto solved = client.Post("/v1/solves?wait=100&fields=summary", problem.dump(), "application/json");
@@ -347,7 +340,7 @@ TEST_F(Hostile, ManyWhoSendALongBodyAByteASecond) {
     std::thread slow([&] { drip(200, post_head("Content-Length: 1000000"), " ", drip_time()); });
     std::this_thread::sleep_for(500ms);
     httplib::Client client("127.0.0.1", port());
-    const auto reply = client.Post("/v1/validate", example("paper-nonconforming"), "application/json");
+    const auto reply = client.Post("/v1/validate", example("paper-nonconforming").dump(), "application/json");
     EXPECT_EQ(reply->status, 200);
     slow.join();
   });
@@ -356,7 +349,7 @@ TEST_F(Hostile, ManyWhoSendALongBodyAByteASecond) {
 TEST_F(Hostile, ManyWhoAskAndDoNotListen) {
   httplib::Client client("127.0.0.1", port());
   client.set_read_timeout(60);
-  json problem = json::parse(example("paper-nonconforming"));
+  json problem = example("paper-nonconforming");
   problem["mesh"]["divisions"] = {160, 160};
   problem["solver"] = {{"method", "active_set"}};
   const auto solved = client.Post("/v1/solves?wait=100&fields=summary", problem.dump(), "application/json");

@@ -8,8 +8,8 @@
 #include <regex>
 #include <thread>
 
-#include "api/examples.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 
@@ -18,16 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-json paper_problem(int divisions) {
-  json problem;
-  for (const api::Example& each : api::examples()) {
-    if (each.name == "paper-nonconforming") problem = json::parse(each.json);
-  }
-  problem["solver"] = {{"method", "active_set"}};
-  problem["mesh"]["divisions"] = {divisions, divisions};
-  return problem;
-}
 
 std::string output_of(const std::string& command) {
   std::string output;

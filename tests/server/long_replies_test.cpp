@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include <sys/socket.h>
 
-#include "api/examples.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
@@ -26,8 +27,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-constexpr std::size_t megabyte = std::size_t{1} << 20;
-
 /// Does not let the system take much for a client that does not read.
 RawClient deaf_client(int port, const std::string& path) {
   RawClient client(port);
@@ -40,12 +39,7 @@ RawClient deaf_client(int port, const std::string& path) {
 class LongReplies : public testing::Test {
  protected:
   LongReplies() : daemon_({"--data-dir", directory_.path() + "/data"}) {
-    json problem;
-    for (const api::Example& each : api::examples())
-      if (each.name == "paper-nonconforming") problem = json::parse(each.json);
-    const int divisions = sanitized ? 60 : long_tests() ? 400 : 200;
-    problem["mesh"]["divisions"] = {divisions, divisions};
-    problem["solver"] = {{"method", "active_set"}};
+    const json problem = paper_problem(sanitized ? 60 : long_tests() ? 400 : 200);
     httplib::Client client("127.0.0.1", port());
     client.set_read_timeout(200);
     const auto reply = client.Post("/v1/solves?wait=200&fields=summary", problem.dump(), "application/json");
@@ -68,30 +62,37 @@ class LongReplies : public testing::Test {
   std::string id_;
 };
 
-/// Once the list took 16 s. What stalls the service stalls it each time, a pause of the machine does not.
+/// What nine in ten of the times are at most: what stalls the service shows in many, a pause of the machine
+/// in few.
+Clock::duration most_are_within(std::vector<Clock::duration> times) {
+  const auto place = times.begin() + static_cast<std::ptrdiff_t>(9 * times.size() / 10);
+  std::ranges::nth_element(times, place);
+  return *place;
+}
+
+/// Once the list took 16 s.
 TEST_F(LongReplies, LeaveTheServiceToOthers) {
-  auto list = Clock::duration::max(), health = list;
-  for (int attempt = 0; attempt < 3 && (list > 1s || health > 100ms); ++attempt) {
-    std::atomic<int> reading = 8;
-    std::vector<std::thread> readers;
-    for (int i = 0; i < reading; ++i)
-      readers.emplace_back([&] {
-        httplib::Client client("127.0.0.1", port());
-        client.set_read_timeout(200);
-        const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
-        EXPECT_TRUE(reply && reply->status == 200);
-        --reading;
-      });
-    list = health = {};
-    while (reading > 0) {
-      list = std::max({list, time_of("/v1/solves"), time_of(result() + "?fields=summary")});
-      health = std::max(health, time_of("/healthz"));
-    }
-    for (std::thread& reader : readers) reader.join();
-  }
+  std::atomic<int> reading = 8;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 8; ++i)
+    readers.emplace_back([&] {
+      httplib::Client client("127.0.0.1", port());
+      client.set_read_timeout(200);
+      const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
+      EXPECT_TRUE(reply && reply->status == 200);
+      --reading;
+    });
+  std::vector<Clock::duration> list, summary, health;
+  do {
+    list.push_back(time_of("/v1/solves"));
+    summary.push_back(time_of(result() + "?fields=summary"));
+    health.push_back(time_of("/healthz"));
+  } while (reading > 0);
+  for (std::thread& reader : readers) reader.join();
   if (sanitized) return;
-  EXPECT_LT(list, 1s);
-  EXPECT_LT(health, 100ms);
+  EXPECT_LT(most_are_within(list), 1s);
+  EXPECT_LT(most_are_within(summary), 1s);
+  EXPECT_LT(most_are_within(health), 100ms);
 }
 
 /// Once each of them cost a copy of the result, and some more.

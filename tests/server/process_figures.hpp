@@ -6,6 +6,8 @@
 
 namespace signorini::server {
 
+constexpr std::size_t megabyte = std::size_t{1} << 20;
+
 /// Of a process, as Linux counts.
 struct ProcessFigures {
   std::size_t memory = 0;       ///< resident bytes

@@ -9,6 +9,7 @@
 #include "mesh_quality.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -86,6 +87,7 @@ TEST(Adapt, HasTheBestRateInTheNumberOfTriangles) {
 }
 
 TEST(Adapt, HasTheBestRateForElasticBodies) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Scheme scheme : schemes) {
     const bool conforming = scheme == Scheme::conforming;
     const Solution solution =
@@ -96,6 +98,7 @@ TEST(Adapt, HasTheBestRateForElasticBodies) {
 }
 
 TEST(Adapt, HasTheBestRateForTheHalfDisc) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   const Solution solution =
       solve(adaptive(problems::half_disc(Scheme::nonconforming), 1e-9, 8000), by(ActiveSet{}));
   EXPECT_LE(rate(solution.summary.levels, 300), -0.48);
@@ -235,11 +238,14 @@ TEST(Adapt, LowersTheBoundWhereAHoleTouches) {
   for (const Scheme scheme : schemes)
     for (const double poisson : {0.3, 0.49999})
       for (const int corners : {3, 4, 12}) {
+        const int most = sanitized ? 400 : 3000;
         const Solution solution =
-            solve(adaptive(problems::touching_hole(scheme, poisson, corners), 1e-9, 3000), by(ActiveSet{}));
+            solve(adaptive(problems::touching_hole(scheme, poisson, corners), 1e-9, most), by(ActiveSet{}));
         const std::vector<Level>& levels = solution.summary.levels;
-        EXPECT_GT(levels.back().triangles, 1500) << solution.summary.advice;
-        EXPECT_LT(levels.back().relative, scheme == Scheme::conforming ? 0.2 : 0.5);
+        EXPECT_GT(levels.back().triangles, most / 2) << solution.summary.advice;
+        if (!sanitized) {
+          EXPECT_LT(levels.back().relative, scheme == Scheme::conforming ? 0.2 : 0.5);
+        }
         for (std::size_t i = 1; i < levels.size(); ++i) {
           const double before = levels[i].triangles > 300 ? levels[i - 1].relative : 1e9;
           EXPECT_LT(levels[i].relative, 1.05 * before)
@@ -251,9 +257,10 @@ TEST(Adapt, LowersTheBoundWhereAHoleTouches) {
 TEST(Adapt, SolvesElasticBodiesToOneThousandth) {
   for (const auto& [problem, most] : {std::pair(problems::pressed_angle(Scheme::conforming), 35000),
                                       {problems::half_disc(Scheme::conforming), 55000}}) {
-    const Solution solution = solve(adaptive(problem, 1e-3, most), by(ActiveSet{}));
+    const double tolerance = sanitized ? 3e-2 : 1e-3;
+    const Solution solution = solve(adaptive(problem, tolerance, most), by(ActiveSet{}));
     EXPECT_EQ(solution.summary.outcome, Outcome::converged) << solution.summary.advice;
-    EXPECT_LE(solution.summary.error_bound->relative, 1e-3);
+    EXPECT_LE(solution.summary.error_bound->relative, tolerance);
     EXPECT_TRUE(solution.summary.error_bound->guaranteed);
     EXPECT_LE(solution.summary.levels.size(), 14u);
   }

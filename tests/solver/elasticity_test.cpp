@@ -4,6 +4,7 @@
 #include "methods_agree.hpp"
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -225,6 +226,7 @@ double slanted_modulus(const Point& x) {
 }
 
 TEST(Graded, ASmoothModulusIsTheLimitOfLayers) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     const Summary smooth = solve(graded_block(scheme, slanted_modulus), {ActiveSet{}, {}}).summary;
     ASSERT_LT(smooth.contact.length, 1.9);  // part of the foundation is clear

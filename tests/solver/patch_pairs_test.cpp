@@ -6,6 +6,7 @@
 #include "certify/totals.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/submesh.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -170,6 +171,7 @@ TEST_P(PatchPairsOfTheEdge, KnowTheErrorAgainstTheirDifference) {
 }
 
 TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Problem& problem :
        {Exact::problem(Scheme::conforming, 2), problems::paper(Scheme::conforming, 4)}) {
     const auto divisions = std::get<Divisions>(problem.mesh.fineness);
@@ -177,8 +179,9 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
                                          std::get<Rectangle>(problem.domain), divisions, Pattern::right)));
     for (const auto& pairs : pairs_of(whole)) {
       Totals totals(whole.discretization().triangles());
-      totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()}, pairs->first(),
-                    MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
+      totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
+                    pairs->first(), MembraneSums(*pairs), pairs->patch().parents, whole.progress(),
+                    &pairs->second());
       const Sums sums = sums_of(*pairs);
       // Lifts are integrated by a quadrature.
       EXPECT_NEAR(totals.all.known, sums.known, 1e-5 * sums.span);
@@ -252,14 +255,16 @@ TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
   expect_to_fit(whole, all);
   for (const auto& pairs : all) {
     Totals totals(whole.discretization().triangles());
-    totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()}, pairs->first(),
-                  MembraneSums(*pairs), pairs->patch().parents, whole.progress(), &pairs->second());
+    totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
+                  pairs->first(), MembraneSums(*pairs), pairs->patch().parents, whole.progress(),
+                  &pairs->second());
     const TriangleSums& sums = totals.all;
     EXPECT_LT(sums.correction - 2 * sums.along + sums.span, 0.03 * sums.correction);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, PatchPairsOfTheEdge, testing::Values(2, 6));
+INSTANTIATE_TEST_SUITE_P(Sizes, PatchPairsOfTheEdge,
+                         testing::ValuesIn(sanitized ? std::vector{2} : std::vector{2, 6}));
 
 TEST(Totals, FindTheLeastOverTheWay) {
   for (const double known : {-3., -0.2, 0., 0.1, 0.5, 4.})

@@ -4,6 +4,7 @@
 #include "methods_agree.hpp"
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -101,8 +102,8 @@ TEST(Pentagon, ConformingRate) {
   expect_rate_on_pentagon(Scheme::conforming, 1.9);
 }
 
-/// A random star-shaped polygon, every other one with a hole, fixed at one side. Sides that do not touch that one
-/// are contacts with gaps of either sign, or pulled.
+/// A random star-shaped polygon, every other one with a hole, fixed at one side. Sides that do not touch that
+/// one are contacts with gaps of either sign, or pulled.
 Problem random_polygon(unsigned seed) {
   std::mt19937 engine(seed);
   const auto number = [&](double low, double high) {
@@ -163,8 +164,8 @@ Solution cantilever(Scheme scheme, double poisson, int refine) {
   return solve(problem, {ActiveSet{}, {}});
 }
 
-/// The same on triangles that shrink towards the corners of the clamp, whose singularity is stronger near ν = 1/2
-/// and would decide every error on even meshes.
+/// The same on triangles that shrink towards the corners of the clamp, whose singularity is stronger near ν =
+/// 1/2 and would decide every error on even meshes.
 Summary graded_cantilever(Scheme scheme, double poisson, int refine) {
   Problem problem = problems::block(scheme, Pattern::right, 100, poisson);
   problem.domain = Polygon{{{0, 0}, {5, 0}, {5, 1}, {0, 1}}, {}, {"bottom", "right", "top", "left"}};
@@ -177,10 +178,11 @@ Summary graded_cantilever(Scheme scheme, double poisson, int refine) {
   return solve(problem, {ActiveSet{}, {}}).summary;
 }
 
-/// At equal mesh, the errors of the contact force on two meshes of both schemes, against the conforming one on a
-/// finer mesh; of the nonconforming scheme also those of the energy. The conforming energy is no measure: it
-/// meets the fine one to 1e-6 on the coarsest mesh and changes sides.
+/// At equal mesh, the errors of the contact force on two meshes of both schemes, against the conforming one
+/// on a finer mesh; of the nonconforming scheme also those of the energy. The conforming energy is no
+/// measure: it meets the fine one to 1e-6 on the coarsest mesh and changes sides.
 TEST(Cantilever, DoesNotLockOnGradedMeshes) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   constexpr std::array ratios{0.3, 0.49999};
   std::array<Summary, 2> fine;
   for (int i = 0; i < 2; ++i) fine[i] = graded_cantilever(Scheme::conforming, ratios[i], 3);

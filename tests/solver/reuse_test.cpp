@@ -46,6 +46,7 @@ void expect_same(const Solution& found, const Solution& expected) {
 TEST(Reuse, GivesTheAnswersOfASolveFromScratch) {
   for (const Problem& family : problems::families())
     for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{}}}) {
+      if (sanitized && std::holds_alternative<AcceleratedUzawa>(method)) continue;
       problems::Shelf shelf;
       for (unsigned seed = 0; seed < (sanitized ? 2 : 4); ++seed) {
         Problem problem = problems::with_other_data(family, seed);
