@@ -34,7 +34,7 @@ std::size_t characters(const std::string& text) {
 }  // namespace
 
 void Faults::add(std::string pointer, std::string detail) {
-  if (!is_full()) {
+  if (faults_.size() < most) {
     faults_.push_back({std::move(pointer), std::move(detail)});
   } else {
     ++unlisted_;
@@ -129,8 +129,10 @@ std::optional<Object> Value::object() const {
 
 void Object::allow(const std::vector<std::string_view>& names, std::string_view what) const {
   for (const auto& [name, json] : value_.json().items()) {
-    if (value_.faults().is_full()) return;
-    if (std::ranges::find(names, name) == names.end())
+    if (std::ranges::find(names, name) != names.end()) continue;
+    if (value_.faults().is_full())
+      value_.faults().add({}, {});  // is counted
+    else
       Value(json, pointer_to(value_.pointer(), name), value_.faults())
           .fault("is not a member of " + std::string(what) + suggestion(name, names) +
                  "; allowed are: " + list_of(names));

@@ -23,8 +23,8 @@ class Faults {
   void add(std::string pointer, std::string detail);
   void add(const InvalidProblem& invalid);
 
-  /// Whether so many are listed that the rest of a long list is not worth reading.
-  bool is_full() const { return faults_.size() == most; }
+  /// Whether there are more than are listed, so that the rest of a long list is not worth reading.
+  bool is_full() const { return unlisted_ > 0; }
 
   /// Whether the value at the pointer, or one inside it, has a fault.
   bool has_any_at(std::string_view pointer) const;

@@ -20,73 +20,105 @@ struct Counts {
   std::int64_t contact_unknowns = 0;
 };
 
-void count_conditions(const Problem& problem, const std::string& part, std::int64_t edges, Counts& counts) {
-  if (condition_on<Fixed>(problem, part)) counts.fixed_edges += edges;
-  if (condition_on<Roller>(problem, part) || condition_on<Contact>(problem, part))
-    counts.normal_edges += edges;
-}
+/// The estimates of a problem by all its meshes and schemes, which have its domain and its conditions in
+/// common.
+class Estimation {
+ public:
+  explicit Estimation(const Problem& problem) : problem_(problem), predicted_(problem_.domain) {
+    for (const std::string& name : part_names(problem_.domain)) {
+      const auto condition = problem_.boundary.find(name);
+      conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
+    }
+  }
 
-/// The sides of a rectangle in a ring, so that the neighbours of a side are the ones before and after it.
-constexpr std::array kRing{"left", "bottom", "right", "top"};
+  /// By its own mesh and scheme.
+  Estimate operator()();
 
-/// The contact unknowns of a rectangle whose parts have so many edges.
-std::int64_t contact_unknowns(const Problem& problem, const std::vector<MeshSizes::Part>& parts) {
+  Estimate operator()(const MeshRequest& mesh, Scheme scheme) {
+    problem_.mesh = mesh;
+    problem_.scheme = scheme;
+    return (*this)();
+  }
+
+ private:
+  bool is_rectangle() const { return std::holds_alternative<Rectangle>(problem_.domain); }
+  /// Of a part; null if it has another condition.
+  template <typename Of>
+  const Of* condition(std::size_t part) const {
+    return std::get_if<Of>(conditions_[part]);
+  }
+
+  Counts count();
+  std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
+  std::int64_t contact_unknowns(const MeshSizes& sizes) const;
+  std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
+
+  Problem problem_;
+  const PredictedSizes predicted_;
+  std::vector<const Condition*> conditions_;  ///< of the parts
+  std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
+};
+
+std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
+  // The sides in a ring, so that the neighbours of a side are the ones before and after it.
+  constexpr std::array ring{"left", "bottom", "right", "top"};
+  const auto part = [&](int side) {
+    return static_cast<std::size_t>(std::ranges::find(rectangle_parts(), ring[side]) -
+                                    rectangle_parts().begin());
+  };
   std::int64_t unknowns = 0;
   for (int side = 0; side < 4; ++side) {
-    if (!condition_on<Contact>(problem, kRing[side])) continue;
-    unknowns += parts[std::ranges::find(rectangle_parts(), kRing[side]) - rectangle_parts().begin()].edges;
-    if (problem.scheme == Scheme::nonconforming) continue;
+    if (!condition<Contact>(part(side))) continue;
+    unknowns += sizes.parts[part(side)].edges;
+    if (problem_.scheme == Scheme::nonconforming) continue;
     ++unknowns;  // the nodes, less those that a fixed neighbour holds
     for (const int neighbour : {(side + 1) % 4, (side + 3) % 4})
-      if (condition_on<Fixed>(problem, kRing[neighbour])) --unknowns;
+      if (condition<Fixed>(part(neighbour))) --unknowns;
   }
   return unknowns;
 }
 
 /// The edges whose middle becomes a node, or two where a curved boundary turns an elastic body's normal
 /// there.
-std::int64_t nodes_in_the_middle(const Problem& problem, const std::string& name,
-                                 const MeshSizes::Part& part) {
-  const auto* contact = condition_on<Contact>(problem, name);
+std::int64_t Estimation::nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const {
+  const auto* contact = condition<Contact>(part);
   if (!contact) return 0;
-  const bool turns = components(problem.material) == 2 && contact->direction.isZero(0);
-  return part.edges + (turns ? part.chords : 0);
+  const auto& [edges, chords] = sizes.parts[part];
+  const bool turns = components(problem_.material) == 2 && contact->direction.isZero(0);
+  return edges + (turns ? chords : 0);
 }
 
-/// Those of the mesh before its refinements: of the mesh itself, or nearly.
-std::int64_t contact_unknowns(const Problem& problem, const std::vector<std::string>& names,
-                              const std::vector<MeshSizes::Part>& parts, const std::optional<Mesh>& mesh) {
-  if (mesh) return make_clearance_space(problem, *mesh).unknowns;
+/// Those of a mesh before its refinements, nearly.
+std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
+  const bool by_nodes = problem_.scheme == Scheme::conforming;
   std::int64_t unknowns = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!condition_on<Contact>(problem, names[i])) continue;
-    const bool by_nodes = problem.scheme == Scheme::conforming;
-    unknowns += by_nodes ? nodes_in_the_middle(problem, names[i], parts[i]) + 1 : parts[i].edges;
-  }
+  for (std::size_t part = 0; part < conditions_.size(); ++part)
+    if (condition<Contact>(part))
+      unknowns += by_nodes ? nodes_in_the_middle(part, sizes) + 1 : sizes.parts[part].edges;
   return unknowns;
 }
 
-/// Of the mesh that the problem asks for. Small ones are made, as long as they do not have more triangles
-/// together than `may_be_made`, which is lowered by them.
-Counts count(const Problem& problem, const PredictedSizes& predicted, std::int64_t& may_be_made) {
-  const std::vector<std::string> names = part_names(problem.domain);
-  const bool is_rectangle = std::holds_alternative<Rectangle>(problem.domain);
+/// Of the mesh that the problem asks for. Small ones are made.
+Counts Estimation::count() {
   std::optional<Mesh> mesh;
-  if (!is_rectangle && may_be_made > 0) mesh = make_small_mesh(problem.domain, problem.mesh);
-  if (mesh) may_be_made -= static_cast<std::int64_t>(mesh->triangles.size());
-  MeshSizes sizes = mesh ? sizes_of(*mesh) : predicted(problem.mesh);
-  std::int64_t contact = is_rectangle ? 0 : contact_unknowns(problem, names, sizes.parts, mesh);
-  for (int i = 0; i < problem.mesh.refine; ++i) {
-    if (problem.scheme == Scheme::nonconforming) contact *= 2;
-    for (std::size_t p = 0; problem.scheme == Scheme::conforming && p < names.size(); ++p)
-      contact += nodes_in_the_middle(problem, names[p], sizes.parts[p]);
+  if (!is_rectangle() && may_be_made_ > 0) mesh = make_small_mesh(problem_.domain, problem_.mesh);
+  if (mesh) may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+  MeshSizes sizes = mesh ? sizes_of(*mesh) : predicted_(problem_.mesh);
+  std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
+  for (int i = 0; i < problem_.mesh.refine; ++i) {
+    if (problem_.scheme == Scheme::nonconforming) contact *= 2;
+    for (std::size_t part = 0; problem_.scheme == Scheme::conforming && part < conditions_.size(); ++part)
+      contact += nodes_in_the_middle(part, sizes);
     sizes = refined(sizes, 1);
   }
-  if (is_rectangle) contact = contact_unknowns(problem, sizes.parts);
+  if (is_rectangle()) contact = contact_unknowns_of_rectangle(sizes);
 
   Counts counts{sizes.triangles, sizes.edges, sizes.points};
-  for (std::size_t p = 0; p < names.size(); ++p)
-    count_conditions(problem, names[p], sizes.parts[p].edges, counts);
+  for (std::size_t part = 0; part < conditions_.size(); ++part) {
+    const std::int64_t edges = sizes.parts[part].edges;
+    if (condition<Fixed>(part)) counts.fixed_edges += edges;
+    if (condition<Roller>(part) || condition<Contact>(part)) counts.normal_edges += edges;
+  }
   counts.contact_unknowns = contact;
   return counts;
 }
@@ -108,10 +140,10 @@ Counts grown(const Counts& start, const Adaptive& goal) {
           boundary(start.contact_unknowns)};
 }
 
-Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::int64_t& may_be_made) {
-  const Spaces& spaces = spaces_of(problem.scheme, components(problem.material));
-  Counts counts = count(problem, predicted, may_be_made);
-  if (problem.mesh.adaptive) counts = grown(counts, *problem.mesh.adaptive);
+Estimate Estimation::operator()() {
+  const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
+  Counts counts = count();
+  if (problem_.mesh.adaptive) counts = grown(counts, *problem_.mesh.adaptive);
   const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
   Estimate estimate;
   estimate.triangles = counts.triangles;
@@ -129,8 +161,8 @@ Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
   const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact};
-  estimate.memory_bytes = memory_of_solve(problem, spaces, sizes);
-  estimate.paper_form_bytes = memory_of_paper_form(problem, spaces, sizes);
+  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes);
+  estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3);
@@ -140,8 +172,7 @@ Estimate estimate(const Problem& problem, const PredictedSizes& predicted, std::
 }  // namespace
 
 Estimate estimate(const Problem& problem) {
-  std::int64_t may_be_made = few_triangles;
-  return estimate(problem, PredictedSizes(problem.domain), may_be_made);
+  return Estimation(problem)();
 }
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
@@ -161,11 +192,10 @@ double memory_with_study(const Estimate& problem, const std::vector<Estimate>& r
 
 std::vector<Estimate> estimate(const Problem& problem, const Study& study, std::int64_t enough) {
   std::vector<Estimate> runs;
-  const PredictedSizes predicted(problem.domain);
-  std::int64_t may_be_made = few_triangles;
+  Estimation estimation(problem);
   for (const Scheme scheme : study.schemes)
     for (const StudyMesh& mesh : study.meshes) {
-      runs.push_back(estimate(run_of(problem, mesh, scheme), predicted, may_be_made));
+      runs.push_back(estimation(mesh.request, scheme));
       enough -= runs.back().unknowns.stress;
       if (enough < 0) return runs;
     }

@@ -5,8 +5,10 @@
 #include <cerrno>
 #include <utility>
 
+#include <linux/sockios.h>
 #include <netdb.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -69,12 +71,24 @@ bool Connection::stopping() const {
   return poll_until(stop_event_, POLLIN, Clock::now());
 }
 
-/// Whether others wait for what the client keeps, and it takes little of it.
-bool Connection::is_in_the_way() const {
-  const auto time = Clock::now() - begun_;
-  const bool slow = time > limits_.slow &&
-                    static_cast<double>(taken_) < limits_.rate * std::chrono::duration<double>(time).count();
-  return slow && (slow_readers_.taken() >= slow_readers_.count() || (in_the_way_ && in_the_way_()));
+/// The system keeps megabytes for a client who reads nothing: they do not count.
+std::uint64_t Connection::acknowledged() const {
+  int unacknowledged = 0;
+  ::ioctl(socket_, SIOCOUTQ, &unacknowledged);
+  return sent_ - static_cast<std::uint64_t>(unacknowledged);
+}
+
+/// Whether others wait for what the client keeps, and it has taken little of it in the last seconds.
+bool Connection::is_in_the_way() {
+  const auto time = Clock::now() - paced_since_;
+  if (time > limits_.slow) {
+    const std::uint64_t taken = acknowledged();
+    is_slow_ = static_cast<double>(taken - paced_from_) <
+               limits_.rate * std::chrono::duration<double>(time).count();
+    paced_since_ += time;
+    paced_from_ = taken;
+  }
+  return is_slow_ && (slow_readers_.taken() >= slow_readers_.count() || (in_the_way_ && in_the_way_()));
 }
 
 /// In one of the places for slow readers; false if there is none in time either.
@@ -97,17 +111,19 @@ bool Connection::wait_writable() {
   const Crew::Rest rest;
   if (poll_until(socket_, POLLOUT, Clock::now() + moment)) return true;
   if (Clock::now() - patient_since_ > limits_.time) {
-    if (taken_since_ < limits_.bytes) return false;
+    if (sent_ - patient_from_ < limits_.bytes) return false;
     patient_since_ = Clock::now();
-    taken_since_ = 0;
+    patient_from_ = sent_;
   }
   return wait_in_place(Clock::now() + (stopping() ? std::chrono::seconds(1) : limits_.time));
 }
 
 void Connection::begin_reply(std::function<bool()> in_the_way) {
   in_the_way_ = std::move(in_the_way);
-  patient_since_ = begun_ = Clock::now();
-  taken_since_ = taken_ = 0;
+  patient_since_ = paced_since_ = Clock::now();
+  patient_from_ = sent_;
+  paced_from_ = acknowledged();
+  is_slow_ = false;
 }
 
 bool Connection::send(std::string_view bytes, bool more) {
@@ -120,8 +136,7 @@ bool Connection::send(std::string_view bytes, bool more) {
         ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0));
     if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
     if (sent <= 0) return false;
-    taken_since_ += static_cast<std::uint64_t>(sent);
-    taken_ += static_cast<std::uint64_t>(sent);
+    sent_ += static_cast<std::uint64_t>(sent);
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
   return true;

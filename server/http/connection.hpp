@@ -16,8 +16,8 @@ namespace signorini::server {
 struct WriteLimits {
   std::chrono::seconds time{30};    ///< to take some more of it,
   std::uint64_t bytes = 64 * 1024;  ///< this much at least
-  std::chrono::seconds slow{5};     ///< after which a client who is in the way of others
-  double rate = 16 * 1024;          ///< has to have taken so many bytes a second
+  std::chrono::seconds slow{5};     ///< in which a client who is in the way of others
+  double rate = 16 * 1024;          ///< has to take so many bytes a second
 };
 
 /// What came of an attempt to receive.
@@ -64,7 +64,8 @@ class Connection {
   bool stopping() const;
   bool wait_writable();
   bool wait_in_place(Clock::time_point until);
-  bool is_in_the_way() const;
+  std::uint64_t acknowledged() const;
+  bool is_in_the_way();
   void forget_unsent() const;
 
   std::shared_ptr<void> place_;
@@ -75,10 +76,12 @@ class Connection {
   MessageReader reader_;
   bool ended_ = false;
   std::function<bool()> in_the_way_;
-  Clock::time_point begun_;  ///< the reply
-  std::uint64_t taken_ = 0;  ///< of it
+  std::uint64_t sent_ = 0;  ///< in all
   Clock::time_point patient_since_;
-  std::uint64_t taken_since_ = 0;
+  std::uint64_t patient_from_ = 0;  ///< of what was sent
+  Clock::time_point paced_since_;
+  std::uint64_t paced_from_ = 0;  ///< of what was acknowledged
+  bool is_slow_ = false;          ///< its pace, as last seen
 };
 
 }  // namespace signorini::server
