@@ -83,8 +83,8 @@ bool Connection::is_in_the_way() {
   const auto time = Clock::now() - paced_since_;
   if (time > limits_.slow) {
     const std::uint64_t taken = acknowledged();
-    is_slow_ = static_cast<double>(taken - paced_from_) <
-               limits_.rate * std::chrono::duration<double>(time).count();
+    is_slow_ =
+        static_cast<double>(taken - paced_from_) < limits_.rate * std::chrono::duration<double>(time).count();
     paced_since_ += time;
     paced_from_ = taken;
   }
