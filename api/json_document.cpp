@@ -38,7 +38,7 @@ std::string cause(std::string message) {
 /// Nesting and numbers are limited while parsing: a document that is too large never comes into being.
 class Builder : public nlohmann::json_sax<json> {
  public:
-  explicit Builder(std::string_view text) : text_(text) {}
+  Builder(std::string_view text, Observer* observer) : text_(text), observer_(observer) {}
 
   json take() { return std::move(root_); }
 
@@ -102,6 +102,7 @@ class Builder : public nlohmann::json_sax<json> {
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
     if (++values_ > limits::values) throw too_many(limits::values, "values");
+    if (observer_ && values_ % 4096 == 0 && !observer_->keep_going()) throw Cancelled();
     if (open_.empty()) {
       root_ = std::move(value);
       return &root_;
@@ -122,6 +123,7 @@ class Builder : public nlohmann::json_sax<json> {
   }
 
   std::string_view text_;
+  Observer* const observer_;
   json root_;
   std::size_t values_ = 0, members_ = 0;
   std::vector<json*> open_;
@@ -140,9 +142,9 @@ void refuse_what_is_no_text(std::string_view text) {
 
 }  // namespace
 
-json parse_json(std::string_view text) {
+json parse_json(std::string_view text, Observer* observer) {
   refuse_what_is_no_text(text);
-  Builder builder(text);
+  Builder builder(text, observer);
   json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();
 }

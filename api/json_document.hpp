@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "observer.hpp"
+
 namespace signorini::api {
 
 /// A text that is not a JSON document as this service takes them (I-JSON, RFC 7493): a syntax error,
@@ -16,7 +18,7 @@ class MalformedJson : public std::runtime_error {
 };
 
 /// Parses a document strictly. Throws MalformedJson, whose text names the place (line and column, or the
-/// JSON pointer of a duplicate member).
-nlohmann::json parse_json(std::string_view text);
+/// JSON pointer of a duplicate member), and Cancelled if there is an observer who ends it.
+nlohmann::json parse_json(std::string_view text, Observer* observer = nullptr);
 
 }  // namespace signorini::api

@@ -77,8 +77,8 @@ Request read_request(const Value& value) {
 
 }  // namespace
 
-Request parse_request(std::string_view text) {
-  const json document = parse_json(text);
+Request parse_request(std::string_view text, Observer* observer) {
+  const json document = parse_json(text, observer);
   Faults faults;
   Request request = read_request(Value(document, "", faults));
   faults.throw_if_any();

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "observer.hpp"
 #include "problem/problem.hpp"
 #include "problem/settings.hpp"
 #include "problem/study.hpp"
@@ -23,7 +24,7 @@ struct Request {
 /// Reads a problem document (api/README.md, "A problem"). Throws MalformedJson if the text is no JSON, and
 /// InvalidProblem with every fault found, each with its JSON pointer and the allowed values: of the
 /// document, and if it has none, those that validate() of the solver sees, of a long sweep in the first
-/// entries.
-Request parse_request(std::string_view text);
+/// entries. An observer, if there is one, is asked as the text is read and may end that: throws Cancelled.
+Request parse_request(std::string_view text, Observer* observer = nullptr);
 
 }  // namespace signorini::api

@@ -98,7 +98,7 @@ Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, doub
   if (!claim.problem) return damaged_ending("problem");
   const MemoryLimit limit(max_memory);
   try {
-    const api::Request request = api::parse_request(*claim.problem);
+    const api::Request request = api::parse_request(*claim.problem, &live);
     return ending_of(solve(request, live));
   } catch (const Cancelled&) {
     Ending ending = failed(std::current_exception(), live);

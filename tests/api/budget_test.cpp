@@ -137,6 +137,22 @@ TEST(Budget, RefinementsAreCountedAndNotMade) {
   EXPECT_EQ(found_soon(membrane_on(two, {{"refine", 11}})), "");
 }
 
+/// A worker reads megabytes, and hears that it is to stop meanwhile.
+TEST(Budget, ReadingALongTextMayBeEnded) {
+  class Ends : public Observer {
+   public:
+    bool keep_going() override { return ++asked_ < 10; }
+    int asked() const { return asked_; }
+
+   private:
+    int asked_ = 0;
+  } ends;
+  json long_mesh = square();
+  long_mesh["domain"] = {{"type", "mesh"}, {"points", json(50'000, json{0, 0})}};
+  EXPECT_THROW(parse_request(long_mesh.dump(), &ends), Cancelled);
+  EXPECT_EQ(ends.asked(), 10);
+}
+
 TEST(Budget, ASweepIsReadOnce) {
   json contact = square();
   contact["boundary"]["bottom"] = {{"type", "contact"}};
