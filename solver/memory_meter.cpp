@@ -44,7 +44,7 @@ MemoryLimit::~MemoryLimit() {
   account.limit = std::numeric_limits<std::int64_t>::max();
 }
 
-bool MemoryLimit::was_met() const {
+bool MemoryLimit::was_met() {
   return account.limit_met;
 }
 

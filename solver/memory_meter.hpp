@@ -34,7 +34,8 @@ class MemoryLimit {
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
-  bool was_met() const;  ///< something has failed by it
+  /// Whether something has failed by the limit that this thread has, or had last.
+  static bool was_met();
 };
 
 }  // namespace signorini

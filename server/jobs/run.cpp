@@ -96,8 +96,8 @@ Ending ending_of(Solution solution) {
 
 Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory) {
   if (!claim.problem) return damaged_ending("problem");
-  const MemoryLimit limit(max_memory);
   try {
+    const MemoryLimit limit(max_memory);
     const api::Request request = api::parse_request(*claim.problem, &live);
     return ending_of(solve(request, live));
   } catch (const Cancelled&) {
@@ -106,7 +106,7 @@ Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, doub
     return ending;
   } catch (...) {
     Ending ending = failed(std::current_exception(), live);
-    if (limit.was_met()) ending.error = beyond_its_memory(max_memory);
+    if (MemoryLimit::was_met()) ending.error = beyond_its_memory(max_memory);
     return ending;
   }
 }

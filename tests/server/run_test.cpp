@@ -1,0 +1,51 @@
+// A job from its text to its end.
+
+#include "server/jobs/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../problems/sanitized.hpp"
+#include "example_problems.hpp"
+
+namespace signorini::server {
+namespace {
+
+Claim claim_of(const std::string& problem) {
+  Claim claim;
+  claim.problem = std::make_shared<const std::string>(problem);
+  return claim;
+}
+
+Ending run_within(double bytes, const SolveFunction& solve) {
+  LiveSolve live(std::chrono::system_clock::now());
+  return run(claim_of(paper_problem(32).dump()), solve, live, bytes);
+}
+
+Solution solve_alone(const api::Request& request, Observer& observer) {
+  class Nowhere : public OperatorCache {
+   public:
+    std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
+    void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+  } nowhere;
+  return solve_request(request, observer, nowhere);
+}
+
+TEST(Run, BeyondItsMemoryEndsWithAClearWord) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const Ending ending = run_within(2e6, solve_alone);
+  EXPECT_EQ(ending.status, JobStatus::failed);
+  ASSERT_TRUE(ending.error);
+  EXPECT_EQ(ending.error->kind, "memory-exceeded");
+  EXPECT_NE(ending.error->detail.find("2 MB"), std::string::npos) << ending.error->detail;
+  EXPECT_EQ(run_within(1e9, solve_alone).status, JobStatus::succeeded);
+}
+
+/// The limit is that of a run: what comes after it on the same thread may take what it needs.
+TEST(Run, LeavesNoLimitBehind) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  run_within(2e6, solve_alone);
+  EXPECT_NO_THROW(std::vector<char>(100'000'000));
+}
+
+}  // namespace
+}  // namespace signorini::server
