@@ -12,26 +12,40 @@ namespace {
 /// What g − p may be in the mean, relative to v.
 constexpr double kTolerance = 1e-10;
 
-/// 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its enclosure allows; 0 where that is not
-/// known to be finite, which AdmissibleDisplacement has refused.
-double contact_term(const Discretization& problem, const ContactPressure& pressure,
-                    const AdmissibleDisplacement& v, int i, CellBudget& budget) {
-  const ContactEdge& contact = problem.clearance.edges[i];
-  const auto& [first, second] = pressure.at_ends[i];
-  if (first == 0 && second == 0) return 0;
-  const Field& gap = gap_on(problem, contact);
-  const double size = std::abs(v.along_contact(contact, 0)) + std::abs(v.along_contact(contact, 0.5)) +
-                      std::abs(v.along_contact(contact, 1));
-  double sum = 0;
-  for (const EdgePiece& piece : pieces_on_edge(gap, EdgeLine(problem.mesh, contact.edge), kTolerance * size, budget)) {
-    if (!std::isfinite(piece.remainder)) return 0;
-    for (int q = 0; q < EdgeRule::size; ++q) {
-      const double s = piece.begin + piece.length() * edge_rule().points[q];
-      const double room = piece(s) + piece.remainder - v.along_contact(contact, s);
-      sum += piece.length() * edge_rule().weights[q] * ((1 - s) * first + s * second) * room;
-    }
+/// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its enclosure allows,
+/// the same in all of them; 0 where that is not known to be finite, which AdmissibleDisplacement has refused.
+class ContactTerms {
+ public:
+  ContactTerms(const Discretization& problem, const AdmissibleDisplacement& v, int i, CellBudget& budget)
+      : edge_(i), contact_(problem.clearance.edges[i]), length_(problem.mesh.length(contact_.edge)) {
+    const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
+                        std::abs(v.along_contact(contact_, 1));
+    pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge), kTolerance * size, budget);
+    const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
+    if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
   }
-  return 2 * std::max(0., sum) * problem.mesh.length(contact.edge);
+
+  double operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
+    const auto& [first, second] = pressure.at_ends[edge_];
+    double sum = 0;
+    for (const EdgePiece& piece : pieces_)
+      for (int q = 0; q < EdgeRule::size; ++q) {
+        const double s = piece.begin + piece.length() * edge_rule().points[q];
+        const double room = piece(s) + piece.remainder - v.along_contact(contact_, s);
+        sum += piece.length() * edge_rule().weights[q] * ((1 - s) * first + s * second) * room;
+      }
+    return 2 * std::max(0., sum) * length_;
+  }
+
+ private:
+  const int edge_;
+  const ContactEdge& contact_;
+  const double length_;
+  std::vector<EdgePiece> pieces_;
+};
+
+bool is_zero(const ContactPressure& pressure, int i) {
+  return pressure.at_ends[i][0] == 0 && pressure.at_ends[i][1] == 0;
 }
 
 }  // namespace
@@ -58,12 +72,12 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
   for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
     const int owner = owners[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]];
     if (owner < 0) continue;
-    const double own = contact_term(problem, pair.pressure, pair.v, i, budget);
+    if (is_zero(pair.pressure, i) && (!second || is_zero(second->pressure, i))) continue;
+    const ContactTerms terms(problem, pair.v, i, budget);
+    const double own = terms(pair.pressure, pair.v);
     contact += own;
     shares[owner] += own;
-    if (second)
-      all.known += contact_term(problem, pair.pressure, second->v, i, budget) +
-                   contact_term(problem, second->pressure, pair.v, i, budget) - 2 * own;
+    if (second) all.known += terms(pair.pressure, second->v) + terms(second->pressure, pair.v) - 2 * own;
   }
   add_work_of_traction<D>(problem, pair.v, owners);
 }

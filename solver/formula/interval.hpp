@@ -7,8 +7,8 @@
 namespace signorini {
 
 /// A closed interval of reals, its ends computed in doubles without directed rounding: what the ends are rounded
-/// by is taken to be kEnclosureRounding of the numbers that they are made of, and is allowed for where an enclosure is
-/// used. Where nothing is known, as for 1/x around 0, it is the whole line.
+/// by is taken to be kEnclosureRounding of the numbers that they are made of (certify/THEORY.md, "Assumptions"): a sign
+/// within it counts as zero, a rest within it as none. Where nothing is known, as for 1/x around 0, it is the whole line.
 using Interval = boost::numeric::interval<
     double, boost::numeric::interval_lib::policies<
                 boost::numeric::interval_lib::save_state_nothing<
