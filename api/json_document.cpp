@@ -102,6 +102,8 @@ class Builder : public nlohmann::json_sax<json> {
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
     if (++values_ > limits::values) throw too_many(limits::values, "values");
+    if (!is_in_domain() && ++values_beside_domain_ > limits::values_beside_domain)
+      throw too_many(limits::values_beside_domain, "values outside the domain");
     if (observer_ && values_ % 4096 == 0 && !observer_->keep_going()) throw Cancelled();
     if (open_.empty()) {
       root_ = std::move(value);
@@ -112,6 +114,8 @@ class Builder : public nlohmann::json_sax<json> {
     parent.push_back(std::move(value));
     return &parent.back();
   }
+
+  bool is_in_domain() const { return !names_.empty() && names_.front() == "domain"; }
 
   /// The pointer of the innermost open container.
   std::string pointer() const {
@@ -125,7 +129,7 @@ class Builder : public nlohmann::json_sax<json> {
   std::string_view text_;
   Observer* const observer_;
   json root_;
-  std::size_t values_ = 0, members_ = 0;
+  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0;
   std::vector<json*> open_;
   std::vector<std::string> names_;  ///< the member being read of each open object
 };

@@ -10,6 +10,8 @@ namespace signorini::api::limits {
 
 // Of a document: arrays and objects within each other, values, and members of objects.
 inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 100'000;
+/// Of them, values that are not in the domain.
+inline constexpr std::size_t values_beside_domain = 300'000;
 
 // Characters.
 inline constexpr std::size_t title = 200, part_name = 200, expression = 1000;

@@ -41,6 +41,8 @@ Failure describe(std::exception_ptr error) {
     return {422,
             {"invalid-problem", "The problem cannot be solved as posed",
              faults_in_words(invalid.faults().size()), pointer_items(invalid.faults())}};
+  } catch (const TimeUp& late) {
+    return {422, {"time-limit", "The time limit was reached before there was an answer", late.what()}};
   } catch (const SolveError& unsolvable) {
     return {422, {"no-solution", "The problem has no solution that can be computed", unsolvable.what()}};
   } catch (const Cancelled&) {

@@ -85,7 +85,7 @@ Squares integrate(const Problem& problem, const Exact& exact, const Solution& so
   if (!exact.displacement && exact.stress.empty()) return squares;
   Differences<D> differences(problem, exact, solution);
   for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
-    if (t % 4096 == 0 && !observer.keep_going()) throw Cancelled();
+    if (t % 256 == 0 && !observer.keep_going()) throw Cancelled();
     differences.add(t, squares);
   }
   return squares;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdio>
 
+#include <malloc.h>
+
 #include "api/cbor_document.hpp"
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
@@ -19,11 +21,11 @@ std::string json_of(const std::string& cbor, std::size_t max_bytes) {
                             " bytes (--max-body-bytes), which is how it is counted."});
 }
 
-/// The body as JSON text.
-std::string read_body(const Request& request, std::size_t max_bytes) {
+/// Whether the body is CBOR and not JSON.
+bool is_in_cbor(const Request& request) {
   const std::optional<std::string> type = request.header("Content-Type");
-  if (type && is_json(*type)) return request.read_body(max_bytes);
-  if (type && is_cbor(*type)) return json_of(request.read_body(max_bytes), max_bytes);
+  if (type && is_json(*type)) return false;
+  if (type && is_cbor(*type)) return true;
   throw HttpError(
       415,
       {"unsupported-media-type", "Unsupported media type",
@@ -33,17 +35,33 @@ std::string read_body(const Request& request, std::size_t max_bytes) {
 }
 
 /// A mesh of the client's own may be so large that to read it takes some tenths of a second and a hundred
-/// megabytes: one at a time.
-std::shared_ptr<void> place_to_read(Service& service, const std::string& text) {
+/// megabytes: one at a time. CBOR is a quarter as long as the text that it stands for, at the least.
+std::shared_ptr<void> place_to_read(Service& service, std::size_t bytes, bool is_cbor) {
   constexpr std::size_t large = 1 << 20;
-  if (text.size() <= large) return nullptr;
+  if (bytes <= (is_cbor ? large / 4 : large)) return nullptr;
   if (std::shared_ptr<void> place = service.large_bodies.take()) return place;
   throw HttpError(503,
                   {"reading-another", "Another large problem is being read",
                    "Problems of more than " + std::to_string(large) +
-                       " bytes are read one at a time. Send it again in a second."},
+                       " bytes (as CBOR, of a quarter) are read one at a time. Send it again in a second."},
                   {{"Retry-After", "1"}});
 }
+
+/// Gives back to the system what a document has taken, once it is read: each thread's heap would keep it, tens of
+/// times a body's length, and there are tens of threads.
+class ReleasedMemory {
+ public:
+  explicit ReleasedMemory(std::size_t body) : is_much_(body > 1 << 17) {}
+  ~ReleasedMemory() {
+    if (is_much_) malloc_trim(0);
+  }
+
+  ReleasedMemory(const ReleasedMemory&) = delete;
+  ReleasedMemory& operator=(const ReleasedMemory&) = delete;
+
+ private:
+  const bool is_much_;
+};
 
 void require_few_unknowns(const Intake& intake, const Limits& limits) {
   const std::int64_t unknowns = intake.estimate.unknowns.stress;
@@ -108,8 +126,11 @@ double Intake::memory() const {
 Intake take_in(Service& service, const Request& request) {
   const Limits& limits = service.limits;
   Intake intake;
-  intake.text = read_body(request, limits.max_body_bytes);
-  const std::shared_ptr<void> place = place_to_read(service, intake.text);
+  const bool is_cbor = is_in_cbor(request);
+  intake.text = request.read_body(limits.max_body_bytes);
+  const ReleasedMemory released(intake.text.size());
+  const std::shared_ptr<void> place = place_to_read(service, intake.text.size(), is_cbor);
+  if (is_cbor) intake.text = json_of(intake.text, limits.max_body_bytes);
   intake.request = api::parse_request(intake.text);
   intake.estimate =
       for_solve(estimate(intake.request.problem), intake.request.settings, intake.request.sweep.size());

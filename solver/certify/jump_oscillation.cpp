@@ -84,14 +84,14 @@ const PiecewiseLoads<D>& piecewise_loads(int reference) {
 
 template <int D>
 double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
-                        const std::array<Point, 3>& corners) {
+                        const std::array<Point, 3>& corners, Progress& progress) {
   const ReferenceMap map = nearest_reference<D>(corners);
   const PiecewiseLoads<D>& loads = piecewise_loads<D>(map.reference);
   const Mesh& pieces = loads.pieces();
   const AffineMap whole(corners);
   const Point origin = corners[map.first], reference_origin = reference_triangles()[map.reference].corners[0];
   const double area = whole.determinant / 2, tolerance = kTolerance * projected.unbalanced / std::sqrt(area);
-  CellBudget budget{kCells};
+  CellBudget budget{kCells, &progress};
   typename PiecewiseLoads<D>::Values values;
   double rest_square = 0, uncertain_square = 0;
   for (int s = 0; s < kPieces<D>; ++s) {
@@ -126,7 +126,9 @@ double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
          constant * std::sqrt(uncertain_square);
 }
 
-template double jump_oscillation<1>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&);
-template double jump_oscillation<2>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&);
+template double jump_oscillation<1>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&,
+                                    Progress&);
+template double jump_oscillation<2>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&,
+                                    Progress&);
 
 }  // namespace signorini

@@ -22,6 +22,6 @@ namespace signorini {
 /// hence B⁻¹ r (for a membrane w and r as they are).
 template <int D>
 double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
-                        const std::array<Point, 3>& corners);
+                        const std::array<Point, 3>& corners, Progress& progress);
 
 }  // namespace signorini

@@ -221,11 +221,11 @@ namespace {
 
 /// A law that varies so much on a triangle that it would take too many pieces is known less well.
 std::vector<LawPiece> affordable_pieces(const Material& material, const std::array<Point, 3>& corners,
-                                        double tolerance) {
+                                        double tolerance, Progress& progress) {
   // A piece of an elastic body's triangle has thrice the points, of which each takes ten times the work.
   const int most = components(material) == 1 ? 400 : 60;
   for (;; tolerance *= 10) {
-    CellBudget budget{most};
+    CellBudget budget{most, &progress};
     std::vector<LawPiece> pieces = law_pieces(material, corners, tolerance, budget);
     if (budget.cells > 0 || tolerance >= 1) return pieces;
   }
@@ -245,7 +245,7 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
     }
   for (int t = 0; t < count; ++t) {
     if (t % 64 == 0) progress.check();
-    std::vector<LawPiece> pieces = affordable_pieces(material, mesh.corners(t), tolerance);
+    std::vector<LawPiece> pieces = affordable_pieces(material, mesh.corners(t), tolerance, progress);
     LawPiece whole{pieces.front()};
     for (const LawPiece& own : pieces) {
       for (int k = 0; k < LawPiece::kOrders; ++k) whole.errors[k] = std::max(whole.errors[k], own.errors[k]);

@@ -9,11 +9,11 @@
 namespace signorini {
 
 template <int D>
-double oscillation(const Discretization& problem, int t, const LawOnMesh& laws) {
+double oscillation(const Discretization& problem, int t, const LawOnMesh& laws, Progress& progress) {
   const auto corners = problem.mesh.corners(t);
   const ProjectedLoad& load = problem.body[t];
   double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
-  if (load.jumps && sum > 0) sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners));
+  if (load.jumps && sum > 0) sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, progress));
   for (int e = 0; e < 3; ++e) {
     const int edge = problem.mesh.triangle_edges[t][e];
     if (!problem.traction.acts_on(edge)) continue;
@@ -22,7 +22,7 @@ double oscillation(const Discretization& problem, int t, const LawOnMesh& laws) 
   return sum == 0 ? 0 : sum * std::sqrt(laws.whole(t).softest);
 }
 
-template double oscillation<1>(const Discretization&, int, const LawOnMesh&);
-template double oscillation<2>(const Discretization&, int, const LawOnMesh&);
+template double oscillation<1>(const Discretization&, int, const LawOnMesh&, Progress&);
+template double oscillation<2>(const Discretization&, int, const LawOnMesh&, Progress&);
 
 }  // namespace signorini

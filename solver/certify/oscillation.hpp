@@ -12,6 +12,6 @@ namespace signorini {
 /// on one triangle, for every displacement w: with the projections Π₁ onto P1 w counts only up to linear functions,
 /// linear_remainder(). What the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp.
 template <int D>
-double oscillation(const Discretization& problem, int t, const LawOnMesh& laws);
+double oscillation(const Discretization& problem, int t, const LawOnMesh& laws, Progress& progress);
 
 }  // namespace signorini

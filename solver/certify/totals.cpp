@@ -58,7 +58,7 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
-    const double o = oscillation<D>(problem, t, laws);
+    const double o = oscillation<D>(problem, t, laws, progress);
     all += own;
     all.known += o * (2 * std::sqrt(own.moved) + std::sqrt(own.span));
     oscillation_square += o * o;
@@ -68,7 +68,7 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     balanced_correction += of_correction;
     shares[owners[t]] += of_gap + of_correction + own.skew;
   }
-  CellBudget budget{100'000};
+  CellBudget budget{100'000, &progress};
   for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
     const int owner = owners[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]];
     if (owner < 0) continue;

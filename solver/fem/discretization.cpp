@@ -10,7 +10,7 @@ Discretization::Discretization(const Problem& posed, const Mesh& given, Progress
       mesh(given),
       element(posed),
       body(posed, mesh, progress),
-      traction(posed, mesh),
+      traction(posed, mesh, progress),
       load(spaces().displacements(), triangles()),
       clearance(make_clearance_space(posed, mesh)),
       traces(posed, mesh, clearance),

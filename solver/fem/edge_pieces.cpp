@@ -104,6 +104,7 @@ std::vector<EdgePiece> pieces_on_edge(const Field& field, const EdgeLine& edge, 
   if (!field.formula()) return {interpolated(field, edge)};
   std::vector<EdgePiece> pieces, open{piece_of(*field.formula(), edge, 0, 1)};
   while (!open.empty()) {
+    budget.look_around();
     const EdgePiece piece = open.back();
     open.pop_back();
     const double middle = piece.middle();

@@ -33,7 +33,7 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   double largest = 0;
   for (int t = 0; t < count; ++t)
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
-  CellBudget budget{20 * count + 100'000};
+  CellBudget budget{20 * count + 100'000, progress};
   all_.assign(count, constant);
   for (int t = 0; t < count; ++t) {
     if (progress && t % 64 == 0) progress->check();

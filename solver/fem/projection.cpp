@@ -9,6 +9,7 @@
 #include "fem/cubature.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/triangle_pieces.hpp"
+#include "formula/interval.hpp"
 
 namespace signorini {
 namespace {
@@ -52,30 +53,84 @@ const Eigen::Matrix<double, 6, 6>& onto_linear() {
 
 /// f on a triangle in the points of the rules of all its pieces, with what the sums are off by. Integrals are
 /// over the reference triangle.
-struct Samples {
-  std::vector<Point> points;
-  std::vector<double> weights, values;
+class Samples {
+ public:
   double force = 0, work = 0;  ///< ProjectedLoad::uncertain_force, uncertain_work
   double value_square =
       0;  ///< of what f is off by from polynomials of which the rule knows the square, ∫ ( )²
   bool is_finite = true;
   bool jumps = false;  ///< or has a kink
 
+  void add(const Point& point, double weight, double value) {
+    points_.push_back(point);
+    weights_.push_back(weight);
+    values_.push_back(value);
+    if (points_.size() == kKept) sum_up();
+  }
+
   Nodes projection() const {
-    Nodes moments = Nodes::Zero();
-    for (std::size_t q = 0; q < points.size(); ++q)
-      moments += weights[q] * values[q] * quadratic_basis(points[q]).transpose();
-    return moments * inverse_mass();
+    return Nodes::Constant(mean_) + (moments_ + moments_of_kept()) * inverse_mass();
   }
 
   double rest(const Nodes& projection) const {
     double square = 0;
-    for (std::size_t q = 0; q < points.size(); ++q) {
-      const double own = values[q] - projection * quadratic_basis(points[q]);
-      square += weights[q] * own * own;
+    if (!is_summed_up_) {
+      for (std::size_t q = 0; q < points_.size(); ++q) {
+        const double own = values_[q] - projection * quadratic_basis(points_[q]);
+        square += weights_[q] * own * own;
+      }
+    } else {
+      const Nodes beyond_mean = projection - Nodes::Constant(mean_);
+      const double whole = square_ + square_of_kept();
+      square =
+          std::max(0., whole - beyond_mean * mass() * beyond_mean.transpose()) + kEnclosureRounding * whole;
     }
     return std::sqrt(square) + std::sqrt(value_square);
   }
+
+ private:
+  /// A function of more points has many cells, each with a few: then only the sums are kept, of what it has
+  /// beyond its mean. To a function that is nearly a polynomial of P2, of which the difference of sums would
+  /// know little, that does not happen.
+  static constexpr std::size_t kKept = 10'000;
+
+  Nodes moments_of_kept() const {
+    Nodes moments = Nodes::Zero();
+    for (std::size_t q = 0; q < points_.size(); ++q)
+      moments += weights_[q] * (values_[q] - mean_) * quadratic_basis(points_[q]).transpose();
+    return moments;
+  }
+
+  double square_of_kept() const {
+    double square = 0;
+    for (std::size_t q = 0; q < points_.size(); ++q)
+      square += weights_[q] * (values_[q] - mean_) * (values_[q] - mean_);
+    return square;
+  }
+
+  void sum_up() {
+    if (!is_summed_up_) {
+      double area = 0, sum = 0;
+      for (std::size_t q = 0; q < points_.size(); ++q) {
+        area += weights_[q];
+        sum += weights_[q] * values_[q];
+      }
+      mean_ = sum / area;
+      is_summed_up_ = true;
+    }
+    moments_ += moments_of_kept();
+    square_ += square_of_kept();
+    points_.clear();
+    weights_.clear();
+    values_.clear();
+  }
+
+  std::vector<Point> points_;
+  std::vector<double> weights_, values_;
+  bool is_summed_up_ = false;
+  double mean_ = 0;                ///< once summed up
+  Nodes moments_ = Nodes::Zero();  ///< of the points that are no more kept, ∫ (f − mean) φ
+  double square_ = 0;              ///< ∫ (f − mean)²
 };
 
 class Sampler {
@@ -119,11 +174,8 @@ class Sampler {
     const double remainder = piece.models[0].remainder();
     samples_.is_finite = samples_.is_finite && std::isfinite(remainder);
     if (!samples_.is_finite) return;
-    for (const auto& [point, weight] : rule_of_degree(8)) {
-      samples_.points.push_back(piece(point));
-      samples_.weights.push_back(piece.share * weight);
-      samples_.values.push_back(piece.models[0].at(point.x(), point.y()));
-    }
+    for (const auto& [point, weight] : rule_of_degree(8))
+      samples_.add(piece(point), piece.share * weight, piece.models[0].at(point.x(), point.y()));
     samples_.force += piece.share / 2 * remainder;
     samples_.work += piece.share / 2 * remainder;
     samples_.value_square += piece.share / 2 * remainder * remainder;
@@ -132,9 +184,7 @@ class Sampler {
   void add(const Corners& cell, double share, int degree) {
     for (const auto& [point, weight] : rule_of_degree(degree)) {
       const Point own = cell[0] + point.x() * (cell[1] - cell[0]) + point.y() * (cell[2] - cell[0]);
-      samples_.points.push_back(own);
-      samples_.weights.push_back(share * weight);
-      samples_.values.push_back(field_(map_(own)));
+      samples_.add(own, share * weight, field_(map_(own)));
     }
   }
 
@@ -157,11 +207,7 @@ std::optional<double> only_value(const Field& field, const std::array<Point, 3>&
 
 Samples sampled(const Field& function, const AffineMap& map) {
   Samples samples;
-  for (const auto& [point, weight] : rule_of_degree(8)) {
-    samples.points.push_back(point);
-    samples.weights.push_back(weight);
-    samples.values.push_back(function(map(point)));
-  }
+  for (const auto& [point, weight] : rule_of_degree(8)) samples.add(point, weight, function(map(point)));
   return samples;
 }
 

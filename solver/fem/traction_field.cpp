@@ -96,9 +96,9 @@ class Projection {
 
 }  // namespace
 
-TractionField::TractionField(const Problem& problem, const Mesh& mesh) {
+TractionField::TractionField(const Problem& problem, const Mesh& mesh, Progress* progress) {
   const int d = components(problem.material);
-  CellBudget budget{100'000};
+  CellBudget budget{100'000, progress};
   for (const BoundaryPart& part : mesh.boundary) {
     const auto found = problem.boundary.find(part.name);
     if (found == problem.boundary.end()) continue;

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "problem/problem.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 
@@ -20,7 +21,8 @@ struct ProjectedTraction {
 /// The traction t on the edges of Γ_F, also where it is given as a pressure.
 class TractionField {
  public:
-  TractionField(const Problem& problem, const Mesh& mesh);
+  /// `progress` may be null; else throws what it throws.
+  TractionField(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
 
   bool acts_on(int edge) const { return projected_.contains(edge); }
   const ProjectedTraction& operator[](int edge) const { return projected_.at(edge); }

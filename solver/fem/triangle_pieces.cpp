@@ -60,6 +60,7 @@ class Cutter {
   }
 
   void cut(const Corners& cell, int depth) {
+    budget_.look_around();
     const double share = area(cell[0], cell[1], cell[2]);
     if (share == 0 || (settled_ && settled_(cell, share))) return;
     Values values = evaluate(cell);

@@ -6,6 +6,7 @@
 #include "formula/series.hpp"
 #include "formula/taylor_model.hpp"
 #include "problem/field.hpp"
+#include "progress.hpp"
 
 namespace signorini {
 
@@ -25,9 +26,16 @@ struct TrianglePiece {
   }
 };
 
-/// How many cells may still be made for the formulas of one problem.
+/// How many cells may still be made for the formulas of one problem. To enclose a formula in many takes seconds: a
+/// progress, if there is one, is asked in each.
 struct CellBudget {
   int cells;
+  Progress* progress = nullptr;
+
+  /// Throws what the progress throws.
+  void look_around() const {
+    if (progress) progress->check();
+  }
 };
 
 /// The part of a convex polygon where a linear function is not negative.

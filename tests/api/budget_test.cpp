@@ -137,6 +137,12 @@ TEST(Budget, RefinementsAreCountedAndNotMade) {
   EXPECT_EQ(found_soon(membrane_on(two, {{"refine", 11}})), "");
 }
 
+TEST(Budget, OnlyADomainHasMillionsOfValues) {
+  json entries = square();
+  entries["sweep"] = json(350'000, json::object());
+  EXPECT_EQ(found_soon(entries), "malformed");
+}
+
 /// A worker reads megabytes, and hears that it is to stop meanwhile.
 TEST(Budget, ReadingALongTextMayBeEnded) {
   class Ends : public Observer {

@@ -82,8 +82,8 @@ TEST(ParseJson, StopsAtTheDepthLimitWithoutRecursion) {
 
 TEST(ParseJson, CountsDepthNotContainers) {
   std::string many = "[";
-  for (int i = 0; i < 200'000; ++i) many += "[{}],";
-  EXPECT_EQ(parse_json(many + "0]").size(), 200'001u);
+  for (int i = 0; i < 100'000; ++i) many += "[{}],";
+  EXPECT_EQ(parse_json(many + "0]").size(), 100'001u);
 }
 
 TEST(ParseJson, DoesNotRepeatALongTextThatItRefuses) {
