@@ -153,5 +153,34 @@ TEST(Cancel, EndsASolveWithinAQuarterOfASecondWhateverItDoes) {
   }
 }
 
+/// A formula of which the values on a triangle are enclosed in some hundred thousand cells, each for long.
+Field intricate() {
+  std::string text = "2";
+  for (int i = 1; i < 30; ++i)
+    text += " + tanh(" + std::to_string(static_cast<int>(std::pow(10, i % 6))) + " * sin(x * y * " +
+            std::to_string(i) + ")) * 1e-3";
+  return problems::formula(text);
+}
+
+TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
+  const Problem simple = membrane_on(Rectangle{}, MeshRequest(Divisions{4, 4}), {"left"});
+  Problem load = simple, stiffness = simple, traction = simple;
+  load.body = VectorField(intricate());
+  stiffness.material = MembraneStiffness::isotropic(intricate());
+  traction.boundary["right"] = Traction{VectorField(intricate())};
+  const Variation swept{"", load.body, simple.boundary, "swept"};
+  const std::vector<std::function<void(Observer&)>> runs{solves(load), solves(stiffness), solves(traction),
+                                                         solves(simple, {}, {swept})};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const double moment = seconds_at_work() + 0.05;
+    CancelsAt observer(moment);
+    try {
+      runs[i](observer);
+    } catch (const Cancelled&) {
+    }
+    EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << i;
+  }
+}
+
 }  // namespace
 }  // namespace signorini

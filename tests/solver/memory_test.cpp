@@ -121,6 +121,16 @@ TEST(MemoryOfTables, CountsThoseOfALoadThatJumps) {
   expect_bound(jumping);
 }
 
+/// Such a load takes a hundred thousand cells, of which none is kept.
+TEST(MemoryOfTables, CountsNoCellsOfALoadThatIsEnclosed) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  for (const char* const load : {"tanh(1e6 * x)", "sin(1 / x)"}) {
+    Problem wild = membrane(Scheme::nonconforming, 4, 4);
+    wild.body = Field(problems::formula(load));
+    EXPECT_LE(static_cast<double>(solve(wild).summary.peak_memory_bytes), estimate(wild).memory_bytes) << load;
+  }
+}
+
 /// It may stop long before it has the triangles that it may have.
 TEST_P(Memory, OfAMeshThatRefinesItselfIsNotExceeded) {
   Problem problem = membrane(GetParam(), 8, 8);
