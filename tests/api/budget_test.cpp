@@ -1,7 +1,6 @@
 // What is done with a problem before it is taken in costs little, whatever the problem asks for.
 
 #include <cmath>
-#include <ctime>
 #include <functional>
 #include <numbers>
 
@@ -11,20 +10,17 @@
 #include "api/json_document.hpp"
 #include "api/problem_json.hpp"
 #include "faults_of.hpp"
+#include "../problems/json_problems.hpp"
 #include "../problems/sanitized.hpp"
+#include "../problems/seconds_at_work.hpp"
 #include "solve.hpp"
 
 namespace signorini::api {
 namespace {
 
 using nlohmann::json;
-
-/// Seconds that this thread has had a core: what other programs take meanwhile does not count.
-double seconds_at_work() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+using problems::membrane_on;
+using problems::ring;
 
 /// All that a thread of the service does with a body.
 void look_at(const std::string& body) {
@@ -54,24 +50,6 @@ std::string found_soon(const json& problem) {
     EXPECT_LT(least, 0.15) << body.substr(0, 200);
   }
   return found;
-}
-
-json ring(int vertices, double radius = 1, double x = 0, double y = 0) {
-  json points = json::array();
-  for (int i = 0; i < vertices; ++i) {
-    const double angle = 2 * std::numbers::pi * i / vertices;
-    points.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
-  }
-  return points;
-}
-
-json membrane_on(const json& domain, const json& mesh) {
-  return {{"model", "membrane"},
-          {"domain", domain},
-          {"mesh", mesh},
-          {"material", {{"stiffness", 1}}},
-          {"boundary", {{"all", {{"type", "fixed"}}}}},
-          {"scheme", "nonconforming"}};
 }
 
 json polygon(const json& vertices, const json& mesh) {

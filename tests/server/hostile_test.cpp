@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <csignal>
 #include <functional>
-#include <numbers>
 #include <thread>
 
 #include <fcntl.h>
@@ -19,6 +17,7 @@
 #include "child_process.hpp"
 #include "example_problems.hpp"
 #include "long_tests.hpp"
+#include "../problems/json_problems.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 
@@ -28,6 +27,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
+using problems::membrane_on;
+using problems::ring;
 
 constexpr std::size_t body_limit = 4 * megabyte;
 
@@ -231,25 +232,6 @@ TEST_F(Hostile, JsonThatBreaksItsReaders) {
           << body.substr(0, 60) << reply;
     }
   });
-}
-
-/// The vertices of a regular polygon.
-json ring(int vertices, double radius, double x, double y) {
-  json points = json::array();
-  for (int i = 0; i < vertices; ++i) {
-    const double angle = 2 * std::numbers::pi * i / vertices;
-    points.push_back({x + radius * std::cos(angle), y + radius * std::sin(angle)});
-  }
-  return points;
-}
-
-json membrane_on(const json& domain, const json& mesh) {
-  return {{"model", "membrane"},
-          {"domain", domain},
-          {"mesh", mesh},
-          {"material", {{"stiffness", 1}}},
-          {"boundary", {{"all", {{"type", "fixed"}}}}},
-          {"scheme", "nonconforming"}};
 }
 
 json many_holes() {

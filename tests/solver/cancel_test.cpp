@@ -1,7 +1,6 @@
 // A solve ends soon after its observer asks for it, whatever it is doing.
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -10,18 +9,12 @@
 
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
+#include "problems/seconds_at_work.hpp"
 #include "server/long_tests.hpp"
 #include "study.hpp"
 
 namespace signorini {
 namespace {
-
-/// Seconds that this thread has had a core: what other programs take meanwhile does not count.
-double seconds_at_work() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Ends a solve at a moment, and knows the phase it was in.
 class CancelsAt : public Observer {
