@@ -26,7 +26,8 @@ Enclosure<Series> along(const EdgeLine& edge, const Interval& s, int order) {
   const int circle = mesh.circle_of(edge.edge);
   if (circle < 0)
     return {on_chord(0), on_chord(1), Series(order, edge.normal.x()), Series(order, edge.normal.y())};
-  const auto& [centre, radius] = mesh.circles[circle];
+  const Point& centre = mesh.circles[circle].centre;
+  const double radius = mesh.circles[circle].radius;
   const auto constant = [&](double value) { return Series(order, value); };
   const auto from_centre = [&](int i) { return smooth(Operation::subtract, on_chord(i), constant(centre[i])); };
   const Series x = from_centre(0), y = from_centre(1), two = constant(2);
