@@ -34,19 +34,6 @@ bool is_in_cbor(const Request& request) {
            " Send it as application/json or application/cbor: curl -H 'Content-Type: application/json'."});
 }
 
-/// A mesh of the client's own may be so large that to read it takes some tenths of a second and a hundred
-/// megabytes: one at a time. CBOR is a quarter as long as the text that it stands for, at the least.
-std::shared_ptr<void> place_to_read(Service& service, std::size_t bytes, bool is_cbor) {
-  constexpr std::size_t large = 1 << 20;
-  if (bytes <= (is_cbor ? large / 4 : large)) return nullptr;
-  if (std::shared_ptr<void> place = service.large_bodies.take()) return place;
-  throw HttpError(503,
-                  {"reading-another", "Another large problem is being read",
-                   "Problems of more than " + std::to_string(large) +
-                       " bytes (as CBOR, of a quarter) are read one at a time. Send it again in a second."},
-                  {{"Retry-After", "1"}});
-}
-
 /// Gives back to the system what a document has taken, once it is read: each thread's heap would keep it, tens of
 /// times a body's length, and there are tens of threads.
 class ReleasedMemory {
@@ -129,7 +116,6 @@ Intake take_in(Service& service, const Request& request) {
   const bool is_cbor = is_in_cbor(request);
   intake.text = request.read_body(limits.max_body_bytes);
   const ReleasedMemory released(intake.text.size());
-  const std::shared_ptr<void> place = place_to_read(service, intake.text.size(), is_cbor);
   if (is_cbor) intake.text = json_of(intake.text, limits.max_body_bytes);
   intake.request = api::parse_request(intake.text);
   intake.estimate =

@@ -22,7 +22,7 @@ struct Intake {
 };
 
 /// Reads the problem in the body of a request, JSON or CBOR. Throws HttpError 415, 413 (bytes or unknowns),
-/// 503 (another large body is being read) and 400, and what api::parse_request throws.
+/// 400, and what api::parse_request throws.
 Intake take_in(Service& service, const Request& request);
 
 /// The same of a problem that must have a study: throws InvalidProblem if it has none.

@@ -35,7 +35,6 @@ struct Service {
   Metrics& metrics;
   UniqueIds ids = {};
   Places waits{limits.max_waits};  ///< of clients that wait
-  Places large_bodies{1};          ///< of problems that take long to read
   SharedResults results{store, limits.max_result_bytes};
 };
 

@@ -38,6 +38,15 @@ std::size_t most_carriers_at_work() {
   return std::max(1u, std::thread::hardware_concurrency());
 }
 
+/// Readers of long bodies: one reads while others wait for the disk.
+constexpr std::size_t readers = 8;
+
+/// Whether it may take long to read what the message brings, or to decode it.
+bool is_long_to_read(const Message& message) {
+  return message.body.size() > LobbyLimits{}.short_body ||
+         (!message.body.empty() && !list_of(message, "Content-Encoding").empty());
+}
+
 LobbyLimits lobby_limits(const ListenerOptions& options) {
   LobbyLimits limits;
   limits.long_bodies = std::max<std::size_t>(1, options.threads / 4);
@@ -123,6 +132,7 @@ class Listener::Impl {
         slow_readers_(options.threads / 2),
         crew_(options.threads, most_at_work()),
         probes_crew_(2, 2),
+        readers_(readers, 1),
         carriers_(options.threads, most_carriers_at_work()),
         lobby_(
             lobby_limits(options),
@@ -161,6 +171,7 @@ class Listener::Impl {
     waiting_room_.stop();
     crew_.shutdown();
     probes_crew_.shutdown();
+    readers_.shutdown();
     carriers_.shutdown();
   }
 
@@ -197,6 +208,7 @@ class Listener::Impl {
 
   Crew& crew_for(const Message& message) {
     if (router_.is_for_probes(message.path)) return probes_crew_;
+    if (is_long_to_read(message)) return readers_;
     return router_.is_long(message.path, read_query(message.query)) ? carriers_ : crew_;
   }
 
@@ -262,7 +274,8 @@ class Listener::Impl {
   Places slow_readers_;
   Crew crew_;
   Crew probes_crew_;  ///< so that probes are answered however much there is to do
-  Crew carriers_;     ///< of long replies, so that short ones do not wait for them
+  Crew readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
+  Crew carriers_;  ///< of long replies, so that short ones do not wait for them
   WaitingRoom waiting_room_;
   Lobby lobby_;
   std::atomic<bool> stopping_ = false;
