@@ -61,7 +61,7 @@ std::string separate_wings(std::vector<Point>& points, std::vector<std::array<in
   for (const auto& [point, around] : shared) {
     Wings wings(triangles, around.triangles, point);
     std::unordered_map<int, int> points_of_wings;
-    const auto own_point = [&](int neighbour) {
+    const auto own_point = [&, point = point](int neighbour) {
       const bool is_first = points_of_wings.empty();
       const auto [own, is_new] = points_of_wings.try_emplace(
           wings.of(neighbour), is_first ? point : static_cast<int>(points.size()));
