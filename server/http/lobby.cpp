@@ -183,12 +183,10 @@ void Lobby::let_in_long_bodies() {
   while (queued_ > 0) {
     std::shared_ptr<void> place = long_bodies_.take();
     if (!place) return;
-    const auto waits = [](const Guests::value_type& guest) {
-      return guest.second.stay == Stay::queued_with_long_body;
-    };
-    auto queued = guests_ | std::views::filter(waits);
-    Guest& next = std::ranges::min_element(queued, {}, [](const Guests::value_type& guest) {
-                    return guest.second.since;
+    // The one who has waited longest.
+    Guest& next = std::ranges::min_element(guests_, {}, [](const Guests::value_type& guest) {
+                    const bool waits = guest.second.stay == Stay::queued_with_long_body;
+                    return std::pair(!waits, guest.second.since);
                   })->second;
     --queued_;
     next.stay = Stay::arriving_with_long_body;
