@@ -34,8 +34,8 @@ bool is_in_cbor(const Request& request) {
            " Send it as application/json or application/cbor: curl -H 'Content-Type: application/json'."});
 }
 
-/// Gives back to the system what a document has taken, once it is read: each thread's heap would keep it, tens of
-/// times a body's length, and there are tens of threads.
+/// Gives back to the system what a document has taken, once it is read: each thread's heap would keep it,
+/// tens of times a body's length, and there are tens of threads.
 class ReleasedMemory {
  public:
   explicit ReleasedMemory(std::size_t body) : is_much_(body > 1 << 17) {}
@@ -50,15 +50,21 @@ class ReleasedMemory {
   const bool is_much_;
 };
 
+/// 413 for a problem that would be too large here: what in it is, and how to make it smaller.
+HttpError too_large(const std::string& kind, const std::string& what, const std::string& pointer,
+                    const std::string& detail) {
+  return {413, {kind, what + " is too large", detail, {{"pointer", pointer, detail}}}};
+}
+
 void require_few_unknowns(const Intake& intake, const Limits& limits) {
   const std::int64_t unknowns = intake.estimate.unknowns.stress;
   if (unknowns <= limits.max_unknowns) return;
   const bool grows = intake.request.problem.mesh.adaptive.has_value();
-  throw HttpError(413, {"too-many-unknowns", "The problem is too large",
-                        (grows ? "It may grow to " : "It has ") + std::to_string(unknowns) +
-                            " stress unknowns; this service takes up to " +
-                            std::to_string(limits.max_unknowns) + " (--max-unknowns). " +
-                            (grows ? "Lower mesh.adaptive.max_triangles." : "Take a coarser mesh.")});
+  throw too_large("too-many-unknowns", "The problem", grows ? "/mesh/adaptive/max_triangles" : "/mesh",
+                  (grows ? "It may grow to " : "It has ") + std::to_string(unknowns) +
+                      " stress unknowns; this service takes up to " + std::to_string(limits.max_unknowns) +
+                      " (--max-unknowns). " +
+                      (grows ? "Lower mesh.adaptive.max_triangles." : "Take a coarser mesh."));
 }
 
 std::string gigabytes(double bytes) {
@@ -70,10 +76,10 @@ std::string gigabytes(double bytes) {
 void require_little_memory(const Intake& intake, const Limits& limits) {
   const double bytes = intake.memory();
   if (bytes <= limits.max_memory) return;
-  throw HttpError(413, {"too-much-memory", "The problem is too large",
-                        "It would take about " + gigabytes(bytes) +
-                            " of memory; this service gives a solve up to " + gigabytes(limits.max_memory) +
-                            " (--max-memory). Take a coarser mesh or the nonconforming scheme."});
+  throw too_large("too-much-memory", "The problem", "/mesh",
+                  "It would take about " + gigabytes(bytes) +
+                      " of memory; this service gives a solve up to " + gigabytes(limits.max_memory) +
+                      " (--max-memory). Take a coarser mesh or the nonconforming scheme.");
 }
 
 /// What a sweep holds are the contact unknowns of its entries.
@@ -81,12 +87,11 @@ void require_short_sweep(const Intake& intake, const Limits& limits) {
   const auto entries = static_cast<std::int64_t>(intake.request.sweep.size());
   const std::int64_t unknowns = entries * intake.estimate.unknowns.contact;
   if (unknowns <= limits.max_unknowns) return;
-  throw HttpError(
-      413,
-      {"too-many-unknowns", "The sweep is too large",
-       "Its " + std::to_string(entries) + " entries have " + std::to_string(unknowns) +
-           " contact unknowns together; this service takes up to " + std::to_string(limits.max_unknowns) +
-           " (--max-unknowns). Split the sweep: the later parts find the factor of the first."});
+  throw too_large("too-many-unknowns", "The sweep", "/sweep",
+                  "Its " + std::to_string(entries) + " entries have " + std::to_string(unknowns) +
+                      " contact unknowns together; this service takes up to " +
+                      std::to_string(limits.max_unknowns) +
+                      " (--max-unknowns). Split the sweep: the later parts find the factor of the first.");
 }
 
 /// The runs follow each other, but their times add up.
@@ -95,13 +100,12 @@ void require_short_study(const Intake& intake, const Limits& limits) {
   for (const Estimate& run : intake.runs) unknowns += run.unknowns.stress;
   if (unknowns <= limits.max_unknowns) return;
   const Study& study = *intake.request.study;
-  throw HttpError(
-      413,
-      {"too-many-unknowns", "The study is too large",
-       "Its " + std::to_string(study.schemes.size() * study.meshes.size()) + " runs have more than " +
-           std::to_string(limits.max_unknowns) +
-           " stress unknowns together, which is what this service takes (--max-unknowns). Leave the finest "
-           "meshes out, or lower study.adaptive.max_triangles."});
+  throw too_large(
+      "too-many-unknowns", "The study", "/study",
+      "Its " + std::to_string(study.schemes.size() * study.meshes.size()) + " runs have more than " +
+          std::to_string(limits.max_unknowns) +
+          " stress unknowns together, which is what this service takes (--max-unknowns). Leave the "
+          "finest meshes out, or lower study.adaptive.max_triangles.");
 }
 
 }  // namespace

@@ -133,6 +133,7 @@ TEST_F(Http, TooLongASweepIs413) {
   problem["sweep"].push_back(json::object());
   const json refusal = expect_problem(client_.Post("/v1/solves", problem.dump(), "application/json"), 413);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("251 entries"), std::string::npos);
+  EXPECT_EQ(refusal.at("errors").at(0).at("pointer"), "/sweep");
 }
 
 TEST_F(Http, StudiesAreSolvesThatMustHaveAStudy) {
@@ -157,6 +158,7 @@ TEST_F(Http, TooLongAStudyIs413) {
   problem["study"]["schemes"] = {"nonconforming", "conforming"};
   const json refusal = expect_problem(client_.Post("/v1/studies", problem.dump(), "application/json"), 413);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("8 runs"), std::string::npos);
+  EXPECT_EQ(refusal.at("errors").at(0).at("pointer"), "/study");
 }
 
 TEST_F(Http, TooManyUnknownsAre413) {
@@ -164,6 +166,7 @@ TEST_F(Http, TooManyUnknownsAre413) {
   problem["mesh"]["divisions"] = {100, 100};
   const json refusal = expect_problem(client_.Post("/v1/solves", problem.dump(), "application/json"), 413);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("--max-unknowns"), std::string::npos);
+  EXPECT_EQ(refusal.at("errors").at(0).at("pointer"), "/mesh");
 }
 
 TEST_F(Http, ConflictingOrMalformedLengthsAre400) {
