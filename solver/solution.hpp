@@ -131,7 +131,7 @@ struct Summary {
   std::vector<Level> levels;  ///< of a mesh that refined itself
   bool reused = false;        ///< the operator was there from an earlier solve
   Timings timings;
-  std::int64_t peak_memory_bytes = 0;  ///< of the process, so far
+  std::int64_t peak_memory_bytes = 0;  ///< that solving it took, its sweep and its study with it
 };
 
 /// What a solve found out about one variation of a problem; everything but what stands here is as in the

@@ -69,10 +69,12 @@ ProblemDetails incomplete(const std::vector<SweepEntry>& sweep) {
 }  // namespace
 
 Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators) {
+  const MemoryMeter memory;
   Solution solution = solve(request.problem, request.sweep, request.settings, observer, operators);
   if (request.study && observer.keep_going())
     solution.study = run_study(request.problem, *request.study, request.settings, observer,
                                solution.summary.timings.total);
+  solution.summary.peak_memory_bytes = memory.peak();
   return solution;
 }
 

@@ -6,6 +6,7 @@
 
 #include "../problems/sanitized.hpp"
 #include "example_problems.hpp"
+#include "solve.hpp"
 
 namespace signorini::server {
 namespace {
@@ -38,6 +39,20 @@ TEST(Run, BeyondItsMemoryEndsWithAClearWord) {
   EXPECT_EQ(ending.error->kind, "memory-exceeded");
   EXPECT_NE(ending.error->detail.find("2 MB"), std::string::npos) << ending.error->detail;
   EXPECT_EQ(run_within(1e9, solve_alone).status, JobStatus::succeeded);
+}
+
+/// The runs of a study may be larger than the problem that they vary.
+TEST(Run, CountsTheMemoryOfItsStudy) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  nlohmann::json problem = paper_problem(8);
+  problem["study"] = {{"divisions", {16, 64}}, {"schemes", {"nonconforming"}}};
+  const api::Request request = api::parse_request(problem.dump());
+  Observer indifferent;
+  const auto peak = static_cast<double>(solve_alone(request, indifferent).summary.peak_memory_bytes);
+  const double predicted =
+      memory_with_study(estimate(request.problem), estimate(request.problem, *request.study, 1'000'000));
+  EXPECT_LE(peak, predicted);
+  EXPECT_GE(peak, predicted / 2);
 }
 
 /// The limit is that of a run: what comes after it on the same thread may take what it needs.
