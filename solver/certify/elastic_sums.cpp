@@ -52,8 +52,8 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
   return strains;
 }
 
-/// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does no more
-/// work on the rest of v than the product of their norms.
+/// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does
+/// no more work on the rest of v than the product of their norms.
 void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
                                    const Inner& inner, TriangleSums& sums) const {
   if (!has_load_) return;
@@ -63,7 +63,8 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule&
   for (int q = 0; q < rule.size(); ++q) {
     const MacroRule::Values& at = rule.values[q];
     const double weight = rule.places[q].weight * map.determinant;
-    Eigen::Vector2d rest = inner.reshaped(2, MacroRule::kInner) * at.inner_basis;
+    Eigen::Vector2d rest =
+        inner.reshaped(2, MacroRule::kInner) * rule.places[q].displacement_basis.tail<MacroRule::kInner>();
     if (!given.lifted.empty()) {
       Tensor<2> slope = Tensor<2>::Zero();
       v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
@@ -75,7 +76,8 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule&
   sums.energy_slack += load.rest * std::sqrt(rest_square) + load.uncertain_work * v_.largest_on(t);
 }
 
-void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const {
+void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law,
+                                    TriangleSums& sums) const {
   const AdmissibleDisplacement::LiftRest rest = v_.rest_of_lifts(t);
   if (rest.slope == 0) return;
   const ProjectedLoad& load = problem_.body[t];
@@ -119,8 +121,9 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const MacroRule& rule,
   for (int q = 0; q < rule.size(); ++q) {
     const double error = rule.errors.empty() ? error_of_whole : rule.errors[q];
     const double of_strain = values.strain.middleRows<3>(3 * q).squaredNorm();
-    sums.slack += 2 * error * (2 * values.stress.middleRows<4>(4 * q).squaredNorm() +
-                               3 * values.correction.middleRows<3>(3 * q).squaredNorm() + of_strain);
+    sums.slack += 2 * error *
+                  (2 * values.stress.middleRows<4>(4 * q).squaredNorm() +
+                   3 * values.correction.middleRows<3>(3 * q).squaredNorm() + of_strain);
     sums.energy_slack += error * of_strain;
   }
   return sums;
@@ -133,14 +136,14 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
   const MacroNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
   const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
-  const std::vector<LawPiece>& pieces = laws.cut(t);
-  std::optional<MacroRule> own;
-  if (!pieces.empty()) own.emplace(problem_.spaces(), pieces, of_fields, laws.tolerance());
-  const MacroRule& rule = own ? *own : macro_rule(problem_.spaces(), degree);
+  const std::vector<LawPiece> pieces = laws.cut(t);
+  if (!pieces.empty()) rule_of_pieces_.fill(problem_.spaces(), pieces, of_fields, laws.tolerance());
+  const MacroRule& rule = pieces.empty() ? macro_rule(problem_.spaces(), degree) : rule_of_pieces_;
   if (lifted) given.lifted = lifted_strains(t, map, rule);
   Inner inner;
-  TriangleSums sums = norms ? by_norms(*norms, given, inner)
-                            : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
+  TriangleSums sums =
+      norms ? by_norms(*norms, given, inner)
+            : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
   add_work_of_load(t, map, rule, given, inner, sums);
   add_rest_of_lifts(t, map, laws.whole(t), sums);
   return sums;

@@ -38,7 +38,7 @@ Eigen::VectorXd squares(const Discretization& problem, const Eigen::MatrixXd& st
   const TrianglePiece whole{{Point(0, 0), Point(1, 0), Point(0, 1)}, 1, {}};
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
-    const std::vector<LawPiece>& cut = laws.cut(t);
+    const std::vector<LawPiece> cut = laws.cut(t);
     const std::span<const LawPiece> pieces = cut.empty() ? std::span(&laws.whole(t), 1) : std::span(cut);
     for (const LawPiece& piece : pieces)
       all[t] += square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, laws.tolerance(), law);

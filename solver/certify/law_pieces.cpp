@@ -219,22 +219,15 @@ std::vector<LawPiece> law_pieces(const Material& material, const std::array<Poin
 
 namespace {
 
-/// A law that varies so much on a triangle that it would take too many pieces is known less well.
-std::vector<LawPiece> affordable_pieces(const Material& material, const std::array<Point, 3>& corners,
-                                        double tolerance, Progress& progress) {
-  // A piece of an elastic body's triangle has thrice the points, of which each takes ten times the work.
-  const int most = components(material) == 1 ? 400 : 60;
-  for (;; tolerance *= 10) {
-    CellBudget budget{most, &progress};
-    std::vector<LawPiece> pieces = law_pieces(material, corners, tolerance, budget);
-    if (budget.cells > 0 || tolerance >= 1) return pieces;
-  }
+/// A piece of an elastic body's triangle has thrice the points, of which each takes ten times the work.
+CellBudget budget_of_triangle(const Material& material, Progress& progress) {
+  return {components(material) == 1 ? 400 : 60, &progress};
 }
 
 }  // namespace
 
 LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double tolerance, Progress& progress)
-    : tolerance_(tolerance) {
+    : material_(material), mesh_(mesh), progress_(progress), tolerance_(tolerance) {
   const int count = is_constant(material) ? 1 : static_cast<int>(mesh.triangles.size());
   const std::vector<const Field*> fields = fields_of(material);
   for (const Field* field : fields)
@@ -245,7 +238,14 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
     }
   for (int t = 0; t < count; ++t) {
     if (t % 64 == 0) progress.check();
-    std::vector<LawPiece> pieces = affordable_pieces(material, mesh.corners(t), tolerance, progress);
+    // A law that varies so much on a triangle that it would take too many pieces is known less well.
+    std::vector<LawPiece> pieces;
+    double own_tolerance = tolerance;
+    for (;; own_tolerance *= 10) {
+      CellBudget budget = budget_of_triangle(material, progress);
+      pieces = law_pieces(material, mesh.corners(t), own_tolerance, budget);
+      if (budget.cells > 0 || own_tolerance >= 1) break;
+    }
     LawPiece whole{pieces.front()};
     for (const LawPiece& own : pieces) {
       for (int k = 0; k < LawPiece::kOrders; ++k) whole.errors[k] = std::max(whole.errors[k], own.errors[k]);
@@ -255,15 +255,16 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
     if (!std::isfinite(whole.errors.back() + whole.softest + whole.stiffest) && unmet_.empty())
       unmet_.push_back("/material is not known to be positive definite and bounded near " +
                        to_string(mesh.centroid(t)));
-    if (pieces.size() > 1) cut_.emplace(t, std::move(pieces));
+    if (pieces.size() > 1) tolerances_.emplace(t, own_tolerance);
     whole_.push_back(std::move(whole));
   }
 }
 
-const std::vector<LawPiece>& LawOnMesh::cut(int t) const {
-  static const std::vector<LawPiece> none;
-  const auto found = cut_.find(t);
-  return found == cut_.end() ? none : found->second;
+std::vector<LawPiece> LawOnMesh::cut(int t) const {
+  const auto found = tolerances_.find(t);
+  if (found == tolerances_.end()) return {};
+  CellBudget budget = budget_of_triangle(material_, progress_);
+  return law_pieces(material_, mesh_.corners(t), found->second, budget);
 }
 
 }  // namespace signorini

@@ -12,8 +12,8 @@
 
 namespace signorini {
 
-/// A part of a triangle on which stiffness E and compliance C are known: they differ from polynomials of degree k − 1
-/// by at most errors[k] times themselves, as quadratic forms.
+/// A part of a triangle on which stiffness E and compliance C are known: they differ from polynomials of
+/// degree k − 1 by at most errors[k] times themselves, as quadratic forms.
 struct LawPiece {
   static constexpr int kOrders = 11;
 
@@ -22,8 +22,8 @@ struct LawPiece {
   double softest = 0;   ///< C is at most this; infinite where E is not known to be positive definite
   double stiffest = 0;  ///< E is at most this
 
-  /// The degree of the cheapest rule for squares of fields of a degree that is off by no more than the tolerance, or
-  /// hardly more than the best.
+  /// The degree of the cheapest rule for squares of fields of a degree that is off by no more than the
+  /// tolerance, or hardly more than the best.
   int degree_of_rule(int of_fields, double tolerance) const;
 
   /// Of a rule that is exact for one degree, where fields of another degree are squared.
@@ -32,12 +32,14 @@ struct LawPiece {
   }
 };
 
-/// Cuts a triangle for the fields of the material; a constant one is a single piece without error. `tolerance`: for the
-/// errors of the highest order.
-std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners, double tolerance,
-                                 CellBudget& budget);
+/// Cuts a triangle for the fields of the material; a constant one is a single piece without error.
+/// `tolerance`: for the errors of the highest order.
+std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners,
+                                 double tolerance, CellBudget& budget);
 
-/// The law of a problem on all triangles of its mesh.
+/// The law of a problem on all triangles of its mesh, which must outlive it. The pieces of a triangle are
+/// found again whenever they are asked for: hardly any work beside the integrals over them, but more memory
+/// than the factor if they were kept.
 class LawOnMesh {
  public:
   /// `tolerance`: what the integrals of squares may be off by, relative.
@@ -47,15 +49,18 @@ class LawOnMesh {
 
   /// Of the whole triangle if it is a single piece, else the largest of its pieces.
   const LawPiece& whole(int t) const { return whole_[whole_.size() == 1 ? 0 : t]; }
-  /// The pieces of a triangle that was cut; none of one that was not.
-  const std::vector<LawPiece>& cut(int t) const;
+  /// The pieces of a triangle that is cut; none of one that is not.
+  std::vector<LawPiece> cut(int t) const;
   /// Why what it says is not certain; empty if it is.
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
+  const Material& material_;
+  const Mesh& mesh_;
+  Progress& progress_;
   double tolerance_;
   std::vector<LawPiece> whole_;
-  std::unordered_map<int, std::vector<LawPiece>> cut_;
+  std::unordered_map<int, double> tolerances_;  ///< of triangles that are cut
   std::vector<std::string> unmet_;
 };
 

@@ -51,17 +51,21 @@ const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
 }  // namespace
 
 MacroRule::MacroRule(const Spaces& spaces, int degree)
-    : MacroRule(spaces, MacroElement::places(rule_of_degree(degree))) {}
+    : places(MacroElement::places(rule_of_degree(degree))) {
+  evaluate(spaces);
+}
 
-MacroRule::MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
-                     double tolerance)
-    : MacroRule(spaces, std::vector<MacroElement::Place>()) {
+void MacroRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
+                     double tolerance) {
+  places.clear();
+  errors.clear();
   for (const LawPiece& piece : pieces) {
     const int degree = piece.degree_of_rule(of_fields, tolerance);
-    for (MacroElement::Place& place : MacroElement::places(rule_of_degree(degree), piece.place.corners))
-      add(spaces, std::move(place));
+    const auto own = MacroElement::places(rule_of_degree(degree), piece.place.corners);
+    places.insert(places.end(), own.begin(), own.end());
     errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
   }
+  evaluate(spaces);
 }
 
 namespace {
@@ -82,24 +86,18 @@ const MacroRule& macro_rule(const Spaces& spaces, int degree) {
   return degree <= 18 ? macro_rule_of_degree<18>(spaces.order) : macro_rule_of_degree<30>(spaces.order);
 }
 
-MacroRule::MacroRule(const Spaces& spaces, std::vector<MacroElement::Place> given) {
-  for (MacroElement::Place& place : given) add(spaces, std::move(place));
-}
-
-void MacroRule::add(const Spaces& spaces, MacroElement::Place place) {
+void MacroRule::evaluate(const Spaces& spaces) {
   const MacroElement& element = macro_element();
-  Values at;
-  for (int k = 0; k < MacroElement::kData; ++k)
-    at.balanced.col(k) = MacroElement::stress(place, element.from_data.col(k));
-  for (int k = 0; k < MacroElement::kFree; ++k)
-    at.free.col(k) = MacroElement::stress(place, element.free.col(k));
-  at.basis = quadratic_basis(place.point);
-  at.gradients = quadratic_gradients(place.point);
-  at.inner_basis = place.displacement_basis.tail<kInner>();
-  at.inner_gradients = place.displacement_gradients.rightCols<kInner>();
-  at.stress = spaces.row.reference_values(place.point);
-  values.push_back(std::move(at));
-  places.push_back(std::move(place));
+  values.resize(places.size());
+  for (std::size_t q = 0; q < places.size(); ++q) {
+    const MacroElement::Place& place = places[q];
+    Values& at = values[q];
+    for (int k = 0; k < MacroElement::kFree; ++k)
+      at.free.col(k) = MacroElement::stress(place, element.free.col(k));
+    at.basis = quadratic_basis(place.point);
+    at.gradients = quadratic_gradients(place.point);
+    at.stress = spaces.row.reference_values(place.point);
+  }
 }
 
 Eigen::Vector3d mandel(const Tensor<2>& tensor) {
@@ -133,6 +131,7 @@ MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
       discrete(admissible),
       skew(rule.size(), data.cols()) {
   const Eigen::Matrix3d to_triangle = piola(map);
+  const Block<MacroElement::kStresses> with_data = macro_element().from_data * data;
   constexpr int kFree = MacroElement::kFree;
   Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
   Block<kFree> free_right = Block<kFree>::Zero(kFree, data.cols());
@@ -141,7 +140,8 @@ MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
     const auto of_stress = stresses(map, at.stress);
     discrete[q].noalias() = of_stress.template topRows<3>() * coefficients;
     skew.row(q).noalias() = of_stress.row(3) * coefficients;
-    admissible[q].noalias() = (to_triangle * at.balanced).eval() * data;
+    for (Eigen::Index k = 0; k < data.cols(); ++k)
+      admissible[q].col(k).noalias() = to_triangle * MacroElement::stress(rule.places[q], with_data.col(k));
     const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
     const Eigen::Matrix<double, kFree, 3> weighted =
         rule.places[q].weight * own.transpose() * law_at(laws, q).compliance;
@@ -181,7 +181,8 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
     const MacroRule::Values& at = rule.values[q];
     strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
     if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
-    const auto own = strains<kInner>(to_gradients * at.inner_gradients);
+    const auto own =
+        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>());
     const SymmetricLaw& law = law_at(laws, q);
     const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law.stiffness;
     inner_matrix += weighted * own;
@@ -200,7 +201,8 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
     const double root = std::sqrt(weight(q)), of_skew = root * std::sqrt(own.skew_compliance);
     const auto factor = own.factor.template triangularView<Eigen::Lower>();
     const Block<3> all =
-        strains_of_v[q] + strains<kInner>(to_gradients * rule.values[q].inner_gradients) * inner;
+        strains_of_v[q] +
+        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>()) * inner;
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
     gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.admissible[q] - all);
     direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.discrete[q] - all);

@@ -12,11 +12,14 @@ namespace signorini {
 
 /// Where the integrals over a macro-element are evaluated, with what does not depend on the triangle.
 struct MacroRule {
+  /// Without any points.
+  MacroRule() = default;
   /// The rule of this degree on each part of the macro-element.
   MacroRule(const Spaces& spaces, int degree);
-  /// On each piece of the triangle in each part of the macro-element the rule that it needs for squares of fields of a
-  /// degree, with the errors of the pieces.
-  MacroRule(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields, double tolerance);
+
+  /// Makes it the rule that has on each piece of the triangle in each part of the macro-element what the piece needs for
+  /// squares of fields of a degree, with the errors of the pieces.
+  void fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields, double tolerance);
 
   int size() const { return static_cast<int>(places.size()); }
 
@@ -24,12 +27,9 @@ struct MacroRule {
   static constexpr int kInner = MacroElement::kNodes - 6;
 
   struct Values {
-    Eigen::Matrix<double, 3, MacroElement::kData> balanced;  ///< (xx, yy, xy) of the stresses with the data
-    Eigen::Matrix<double, 3, MacroElement::kFree> free;      ///< and of those without
+    Eigen::Matrix<double, 3, MacroElement::kFree> free;  ///< (xx, yy, xy) of the stresses without data
     Eigen::Matrix<double, 6, 1> basis;                       ///< of P2 on the triangle
     Eigen::Matrix<double, 2, 6> gradients;
-    Eigen::Matrix<double, kInner, 1> inner_basis;
-    Eigen::Matrix<double, 2, kInner> inner_gradients;
     LocalVectors stress;  ///< of the row space
   };
 
@@ -38,8 +38,7 @@ struct MacroRule {
   std::vector<double> errors;  ///< LawPiece::error_of_rule by points; empty if the triangle was not cut
 
  private:
-  MacroRule(const Spaces& spaces, std::vector<MacroElement::Place> given);
-  void add(const Spaces& spaces, MacroElement::Place place);
+  void evaluate(const Spaces& spaces);
 };
 
 /// The rule of a degree of 6, 10, 18 or 30 for one of the two pairs of spaces, made once.

@@ -82,7 +82,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
   const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
   TriangleSums sums;
-  const std::vector<LawPiece>& pieces = laws.cut(t);
+  const std::vector<LawPiece> pieces = laws.cut(t);
   const auto degree_on = [&](const LawPiece& piece) {
     return std::max(of_load, piece.degree_of_rule(of_fields, laws.tolerance()));
   };

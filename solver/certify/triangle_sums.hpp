@@ -112,6 +112,7 @@ class ElasticSums {
   const EdgeTractions& tractions_;
   const bool has_load_;
   PerShape<Shape> shapes_;
+  MacroRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
 };
 
 }  // namespace signorini
