@@ -1,6 +1,7 @@
 #include "adapt.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "certify/mark.hpp"
@@ -10,6 +11,9 @@
 
 namespace signorini {
 namespace {
+
+/// How many times as many triangles a level has, at most, as the one before.
+constexpr double kGrowth = 1.5;
 
 std::string in_words(double number) {
   std::ostringstream text;
@@ -54,6 +58,18 @@ class Levels {
     return std::ranges::any_of(levels_, [&](const Level& level) {
       return 4 * level.triangles <= last.triangles && level.relative < 1 && level.relative <= last.relative;
     });
+  }
+
+  /// How many times as many triangles the next level should have: half as many again, or less where the rate
+  /// of the last two levels lets expect that this meets the tolerance.
+  double growth() const {
+    constexpr double margin = 1.03;
+    if (levels_.size() < 2) return kGrowth;
+    const Level &last = levels_.back(), &before = levels_[levels_.size() - 2];
+    const double rate = std::log(before.relative / last.relative) /
+                        std::log(static_cast<double>(last.triangles) / before.triangles);
+    return rate > 0 ? std::min(kGrowth, margin * std::pow(last.relative / goal_.tolerance, 1 / rate))
+                    : kGrowth;
   }
 
   Solution end(Outcome outcome, std::string advice = {}) {
@@ -136,10 +152,13 @@ Eigen::VectorXd foreseen(const Eigen::VectorXd& shares, const std::vector<int>& 
 }
 
 /// The largest shares in the square of the bound are refined, as far as they are foreseen to fall, until the
-/// square will have fallen to less than a third or the triangles have grown by half, or would be too many. To
-/// mark little and often grades the mesh as finely as many levels would, for the price of few.
-std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, std::size_t most, Progress& progress) {
-  constexpr double bulk = 0.2, fall = 0.3, growth = 1.5;
+/// square will have fallen to less than a third or the triangles have grown so many times, or would be too
+/// many. To mark little and often grades the mesh as finely as many levels would, for the price of few.
+std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, double growth, std::size_t most,
+                                       Progress& progress) {
+  constexpr double fall = 0.3;
+  const double bulk =
+      growth < kGrowth ? 0.05 : 0.2;  // the last level is not to be larger than it needs to be
   Mesh mesh = solution.mesh;
   Eigen::VectorXd shares = solution.error_squares;
   const double enough = growth * static_cast<double>(mesh.triangles.size()), little = fall * shares.sum();
@@ -169,7 +188,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           Outcome::tolerance_not_met,
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
-    mesh = finer_mesh(levels.finest(), most, progress);
+    mesh = finer_mesh(levels.finest(), levels.growth(), most, progress);
     if (mesh->triangles.size() > most)
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +
