@@ -397,6 +397,8 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
 }
 
 void AdmissibleDisplacement::meet(const ContactEdge& contact) {
+  if (!is_known_on_edges(gap(contact)))
+    refuse(gap(contact).name() + " is a function that is known in single points only: give a formula");
   const auto& [a, b] = problem_.mesh.edges[contact.edge];
   for (const int k : {0, 1})
     if (room(contact, k) < -kNearly * scale_) return refuse_point(k == 0 ? a : b);

@@ -63,12 +63,16 @@ class Carrier {
         laws_(laws),
         pressure_(pressure),
         way_out_(mesh_.triangles.size(), -1),
-        squares_of_data_(Eigen::VectorXd::Zero(problem.triangles())) {}
+        squares_of_loads_(Eigen::VectorXd::Zero(problem.triangles())),
+        on_edges_(Eigen::Matrix3Xd::Zero(3, problem.triangles())) {}
 
-  CarriedLoads run() {
+  CarriedLoads run(const std::vector<double>& forces) {
     std::vector<Action> into(mesh_.triangles.size());
     bool is_any = !pressure_.lacks.empty();
-    for (int t = 0; t < problem_.triangles(); ++t) is_any = !start(t, into[t]) || is_any;
+    for (int t = 0; t < problem_.triangles(); ++t) {
+      if (!forces.empty()) add_load(t, forces[t], into[t]);
+      is_any = !start(t, into[t]) || is_any;
+    }
     if (!is_any) return {};
     for (const ContactPressure::Lack& lack : pressure_.lacks) act(lack.edge, {lack.force, lack.moment}, into);
     CarriedLoads carried;
@@ -89,7 +93,40 @@ class Carrier {
     return carried;
   }
 
+  LoadsBroughtBack bring_back(const std::vector<int>& parents, int triangles) {
+    LoadsBroughtBack back;
+    back.forces.resize(triangles);
+    std::vector<double> areas(triangles);
+    std::vector<Action> into(mesh_.triangles.size());
+    for (int t = 0; t < problem_.triangles(); ++t) {
+      start(t, into[t]);
+      back.forces[parents[t]] += into[t].force;
+      areas[parents[t]] += area(t);
+    }
+    // What is brought back acts against the constant load that stands for it.
+    for (int t = 0; t < problem_.triangles(); ++t)
+      add_load(t, back.forces[parents[t]] * area(t) / areas[parents[t]], into[t]);
+    std::vector<int> order;
+    for (int root = 0; root < problem_.triangles(); ++root) {
+      if (seen_[root]) continue;
+      std::size_t next = order.size();
+      reach(root, -1, order);
+      for (; next < order.size(); ++next)
+        for (const int edge : mesh_.triangle_edges[order[next]])
+          for (const int t : mesh_.edge_triangles[edge])
+            if (t >= 0 && parents[t] == parents[root]) reach(t, edge, order);
+    }
+    for (auto t = order.rbegin(); t != order.rend(); ++t) {
+      if (into[*t].force == 0) continue;
+      if (way_out_[*t] >= 0) pass_on(*t, into);
+      back.square += square_on(*t);
+    }
+    return back;
+  }
+
  private:
+  double area(int t) const { return AffineMap(mesh_.corners(t)).determinant / 2; }
+
   /// A traction on an edge of the boundary.
   void act(int edge, const Action& action, std::vector<Action>& into) {
     const int t = mesh_.edge_triangles[edge][0];
@@ -172,14 +209,8 @@ class Carrier {
   /// The unknown parts of the load on the triangle and of the traction on its edges, as data of the element.
   /// Returns whether there are none.
   bool start(int t, Action& into) {
-    const AffineMap map(mesh_.corners(t));
-    const double h = size(t), force = problem_.body[t].uncertain_force;
-    if (force > 0) {
-      into.add({force, 0}, h);
-      // The projection onto P1 of a load with ∫ |q| = F is nowhere larger than 9 F / area; six nodes.
-      const double at_node = map.determinant * to_reference(map) * 18 * force / map.determinant;
-      squares_of_data_[t] += 6 * at_node * at_node;
-    }
+    const double h = size(t);
+    add_load(t, problem_.body[t].uncertain_force, into);
     for (const int edge : mesh_.triangle_edges[t]) {
       if (!problem_.traction.acts_on(edge)) continue;
       const double of_edge = problem_.traction[edge].uncertain_force;
@@ -190,17 +221,26 @@ class Carrier {
     return into.force == 0;
   }
 
+  /// A load on the triangle with ∫ |q| at most `force`, as data of the element.
+  void add_load(int t, double force, Action& into) {
+    if (force == 0) return;
+    const AffineMap map(mesh_.corners(t));
+    into.add({force, 0}, size(t));
+    // The projection onto P1 of a load with ∫ |q| = F is nowhere larger than 9 F / area; six nodes.
+    const double at_node = map.determinant * to_reference(map) * 18 * force / map.determinant;
+    squares_of_loads_[t] += 2 * 6 * at_node * at_node;  // two loads at most: (a + b)² ≤ 2 (a² + b²)
+  }
+
   /// |J⁻¹| for an elastic body, whose rows are transformed too.
   double to_reference(const AffineMap& map) const {
     return problem_.spaces().components == 1 ? 1 : map.jacobian.inverse().norm();
   }
 
-  /// A linear traction on the edge with the force and the moment, at three nodes.
+  /// A linear traction on the edge with the force and the moment, at three nodes. Several add up.
   void add_edge(int t, int edge, const Action& action) {
     const AffineMap map(mesh_.corners(t));
-    const double of_moment = problem_.spaces().components == 1 ? 0 : 6 * action.moment / mesh_.length(edge);
-    const double at_node = to_reference(map) * (action.force + of_moment);
-    squares_of_data_[t] += 3 * at_node * at_node;
+    on_edges_(mesh_.local_edge(t, edge), t) +=
+        to_reference(map) * (action.force + 6 * action.moment / mesh_.length(edge));
   }
 
   /// Breadth first, so that ways are short.
@@ -232,8 +272,10 @@ class Carrier {
     return order;
   }
 
+  /// A membrane has no moments to pass on: its traction there is constant.
   void pass_on(int t, std::vector<Action>& into) {
     const int edge = way_out_[t];
+    if (problem_.spaces().components == 1) into[t].moment = 0;
     add_edge(t, edge, into[t]);
     const auto& [one, other] = mesh_.edge_triangles[edge];
     const int next = one == t ? other : one;
@@ -245,12 +287,12 @@ class Carrier {
   /// a_T².
   double square_on(int t) const {
     const AffineMap map(mesh_.corners(t));
-    const double j = map.jacobian.squaredNorm();
-    return problem_.spaces().components == 1
-               ? laws_.whole(t).softest * j / map.determinant * std::pow(norm_of_membrane_element(), 2) *
-                     squares_of_data_[t]
-               : laws_.whole(t).softest * j * j / map.determinant * std::pow(norm_of_macro_element(), 2) *
-                     squares_of_data_[t];
+    const double j = map.jacobian.squaredNorm(),
+                 squares_of_data = squares_of_loads_[t] + 3 * on_edges_.col(t).squaredNorm();
+    return problem_.spaces().components == 1 ? laws_.whole(t).softest * j / map.determinant *
+                                                   std::pow(norm_of_membrane_element(), 2) * squares_of_data
+                                             : laws_.whole(t).softest * j * j / map.determinant *
+                                                   std::pow(norm_of_macro_element(), 2) * squares_of_data;
   }
 
   const Discretization& problem_;
@@ -259,14 +301,20 @@ class Carrier {
   const ContactPressure& pressure_;
   std::vector<int> way_out_;  ///< of each triangle the edge towards Γ_D
   std::vector<bool> seen_ = std::vector<bool>(mesh_.triangles.size(), false);
-  Eigen::VectorXd squares_of_data_;
+  Eigen::VectorXd squares_of_loads_;
+  Eigen::Matrix3Xd on_edges_;  ///< at each node of the three edges of a triangle
 };
 
 }  // namespace
 
 CarriedLoads carry_uncertain_loads(const Discretization& problem, const LawOnMesh& laws,
-                                   const ContactPressure& pressure) {
-  return Carrier(problem, laws, pressure).run();
+                                   const ContactPressure& pressure, const std::vector<double>& forces) {
+  return Carrier(problem, laws, pressure).run(forces);
+}
+
+LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws,
+                            const ContactPressure& pressure, const std::vector<int>& parents, int triangles) {
+  return Carrier(patch, laws, pressure).bring_back(parents, triangles);
 }
 
 }  // namespace signorini

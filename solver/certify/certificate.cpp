@@ -21,24 +21,33 @@ constexpr double kOfGap = 2e-5;
 /// Where the pressure of the conforming scheme is not admissible, finer pairs stand for the given one. A
 /// patch that cannot be solved, because nothing holds it, leaves the pair as it is. A mesh that refines
 /// itself is fine in these places already: there the bound would fall by an eighth, for more than its solves
-/// take.
-void add_patches(const Discretization& problem, const Solution& solution, const AdmissiblePair& pair,
-                 double tolerance, Owners& owners, Totals& totals, Progress& progress) {
+/// take. Answers what is not known of the loads on the patches.
+LoadsBroughtBack add_patches(const Discretization& problem, const Solution& solution,
+                             const AdmissiblePair& pair, double tolerance, Owners& owners, Totals& totals,
+                             Progress& progress) {
+  LoadsBroughtBack back{0, std::vector<double>(problem.triangles())};
   const bool is_admissible = problem.spaces().order == 0 || pair.pressure.potential_at_points.empty();
-  if (is_admissible || problem.problem.mesh.adaptive) return;
+  if (is_admissible || problem.problem.mesh.adaptive) return back;
   SilentObserver silent(progress.observer());
   Progress within(silent, std::nullopt);
   for (Patch& patch : patches_where_pressure_changes(problem, pair.pressure)) {
     try {
       const PatchPairs pairs(problem, solution.stress, pair, std::move(patch), within);
-      if (!pairs.are_admissible()) continue;
-      totals.add<1>(pairs.problem(), LawOnMesh(problem.problem.material, *pairs.patch().mesh, tolerance, within), pairs.first(),
-                    MembraneSums(pairs), pairs.patch().parents, within, &pairs.second());
-      for (const int t : pairs.patch().parents) owners[t] = -1;
+      const std::vector<int>& parents = pairs.patch().parents;
+      const LawOnMesh laws(problem.problem.material, *pairs.patch().mesh, tolerance, within);
+      if (!pairs.are_admissible() || !laws.unmet().empty()) continue;
+      const LoadsBroughtBack own =
+          bring_back(pairs.problem(), laws, pairs.first().pressure, parents, problem.triangles());
+      totals.add<1>(pairs.problem(), laws, pairs.first(), MembraneSums(pairs), parents, within,
+                    &pairs.second());
+      for (const int t : parents) owners[t] = -1;
+      back.square += own.square;
+      for (int t = 0; t < problem.triangles(); ++t) back.forces[t] += own.forces[t];
     } catch (const std::runtime_error&) {
       continue;
     }
   }
+  return back;
 }
 
 std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretization& problem,
@@ -54,11 +63,12 @@ std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretizat
 }
 
 std::string nothing_takes(const std::vector<ContactPressure::Lack>& lacks) {
-  return lacks.empty()
-             ? "a load that is no polynomial is known to so many digits, and no fixed part takes the rest: fix a part, or "
-               "give loads that are polynomials on both sides of straight lines"
-             : "a contact is too short for the mesh to hold the body in balance, and no fixed part takes the rest: refine "
-               "the mesh where the body touches, or fix a part";
+  return lacks.empty() ? "a load that is no polynomial is known to so many digits, and no fixed part takes "
+                         "the rest: fix a part, or "
+                         "give loads that are polynomials on both sides of straight lines"
+                       : "a contact is too short for the mesh to hold the body in balance, and no fixed part "
+                         "takes the rest: refine "
+                         "the mesh where the body touches, or fix a part";
 }
 
 void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
@@ -80,15 +90,17 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     unmet.push_back("the stress is not in equilibrium: the iteration ended before it was");
   const double tolerance = kOfGap * std::min(1., estimate_gap(problem, solution.stress, pair.v, progress));
   const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
-  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet()}) add(unmet, reasons);
+  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet()})
+    add(unmet, reasons);
   Totals totals(problem.triangles());
   Owners owners(problem.triangles());
   std::iota(owners.begin(), owners.end(), 0);
+  LoadsBroughtBack of_patches;
   if (problem.spaces().components == 1) {
     pair.v.relax(work_of_loads(problem), kStepsFromAverage, progress);
     minimize_potential(problem, pair.v, clearance, pair.pressure, progress);
     pair.of_balance = potential_of_balance(problem, progress);
-    add_patches(problem, solution, pair, tolerance, owners, totals, progress);
+    of_patches = add_patches(problem, solution, pair, tolerance, owners, totals, progress);
     totals.add<1>(problem, laws, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
   } else {
     if (problem.spaces().order == 1)
@@ -98,8 +110,8 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     progress.check();
     totals.add<2>(problem, laws, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
   }
-  const CarriedLoads carried = carry_uncertain_loads(problem, laws, pair.pressure);
-  totals.carried = carried.norm;
+  const CarriedLoads carried = carry_uncertain_loads(problem, laws, pair.pressure, of_patches.forces);
+  totals.carried = carried.norm + std::sqrt(of_patches.square);
   totals.contact *= 1 + carried.change_of_pressure;
   totals.second_counts = carried.change_of_pressure == 0;
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));

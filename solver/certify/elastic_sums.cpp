@@ -82,7 +82,7 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
   if (rest.slope == 0) return;
   const ProjectedLoad& load = problem_.body[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
-  sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
+  sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                        rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
   sums.add_unknown_strain(zeta);
 }

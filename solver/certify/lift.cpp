@@ -31,7 +31,8 @@ Lift::Powers Lift::slopes(double t) {
   return all;
 }
 
-Lift::Lift(int components, const std::function<Eigen::VectorXd(double s)>& d) : coefficients_(components, kInner) {
+Lift::Lift(int components, const std::function<Eigen::VectorXd(double s)>& d)
+    : coefficients_(components, kInner) {
   static const Eigen::Matrix<double, kInner, kInner> of_values = [] {
     Eigen::Matrix<double, kInner, kInner> all;
     for (int i = 0; i < kInner; ++i) all.row(i) = powers(node(i + 1)).transpose();
@@ -58,19 +59,19 @@ Eigen::VectorXd Lift::value(double a, double b) const {
 Eigen::Matrix<double, Eigen::Dynamic, 2> Lift::gradient(double a, double b, const Vector& gradient_a,
                                                         const Vector& gradient_b) const {
   const double t = (1 + b - a) / 2, factor = 2 - a - b;
-  const Vector of_bubble =
-      factor * (b * gradient_a + a * gradient_b) - a * b * (gradient_a + gradient_b);
+  const Vector of_bubble = factor * (b * gradient_a + a * gradient_b) - a * b * (gradient_a + gradient_b);
   return coefficients_ * powers(t) * of_bubble.transpose() +
          a * b * factor * (coefficients_ * slopes(t)) * ((gradient_b - gradient_a) / 2).transpose();
 }
 
 const Lift::Errors& Lift::errors() {
   static const Errors all = [] {
-    // Between the samples they change by less than the margin.
+    // Between the samples they change by less than the margin. At the ends ω is 0, and ω / 4 s (1 − s) is
+    // |ω'| / 4.
     constexpr int samples = 4000;
     constexpr double margin = 1.002;
     Errors errors{};
-    for (int i = 1; i < samples; ++i) {
+    for (int i = 0; i <= samples; ++i) {
       const double s = 1. * i / samples;
       double omega = 1, slope = 0;
       for (int k = 0; k <= kDegree; ++k) {
@@ -79,7 +80,9 @@ const Lift::Errors& Lift::errors() {
       }
       errors.value = std::max(errors.value, margin * std::abs(omega));
       errors.slope = std::max(errors.slope, margin * std::abs(slope));
-      errors.over_bubble = std::max(errors.over_bubble, margin * std::abs(omega) / (4 * s * (1 - s)));
+      const bool is_end = i == 0 || i == samples;
+      const double over_bubble = is_end ? std::abs(slope) / 4 : std::abs(omega) / (4 * s * (1 - s));
+      errors.over_bubble = std::max(errors.over_bubble, margin * over_bubble);
     }
     return errors;
   }();

@@ -35,8 +35,8 @@ TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
 
 void TriangleSums::add_unknown_strain(double zeta) {
   if (zeta == 0) return;
-  const double fields = std::sqrt(gap) + std::sqrt(direct_gap) + std::sqrt(correction) + 2 * std::sqrt(span) +
-                        4 * std::sqrt(moved);
+  const auto norm = [this](double square) { return std::sqrt(square + slack); };
+  const double fields = norm(gap) + norm(direct_gap) + norm(correction) + 2 * norm(span) + 4 * norm(moved);
   slack += zeta * (2 * fields + zeta);
 }
 
@@ -105,7 +105,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   const AdmissibleDisplacement::LiftRest rest = pair_.v.rest_of_lifts(t);
   if (rest.slope > 0) {
     const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
-    sums.energy_slack += zeta * (std::sqrt(2 * sums.strain) + zeta / 2) +
+    sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                          rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
     sums.add_unknown_strain(zeta);
   }

@@ -82,7 +82,8 @@ PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stres
       second_(second_pair(progress)) {}
 
 bool PatchPairs::are_admissible() const {
-  return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.lacks.empty();
+  return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.lacks.empty() &&
+         problem().body.unmet().empty() && problem().traction.unmet().empty();
 }
 
 AdmissiblePair PatchPairs::first_pair(Progress& progress) const {

@@ -12,15 +12,17 @@ namespace {
 /// What g − p may be in the mean, relative to v.
 constexpr double kTolerance = 1e-10;
 
-/// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its enclosure allows,
-/// the same in all of them; 0 where that is not known to be finite, which AdmissibleDisplacement has refused.
+/// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its
+/// enclosure allows, the same in all of them; 0 where that is not known to be finite, which
+/// AdmissibleDisplacement has refused.
 class ContactTerms {
  public:
   ContactTerms(const Discretization& problem, const AdmissibleDisplacement& v, int i, CellBudget& budget)
       : edge_(i), contact_(problem.clearance.edges[i]), length_(problem.mesh.length(contact_.edge)) {
     const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
                         std::abs(v.along_contact(contact_, 1));
-    pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge), kTolerance * size, budget);
+    pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge),
+                             kTolerance * size, budget);
     const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
     if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
   }
@@ -51,8 +53,8 @@ bool is_zero(const ContactPressure& pressure, int i) {
 }  // namespace
 
 template <int D, typename Sums>
-void Totals::add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair,
-                 Sums sums, const Owners& owners, Progress& progress, const AdmissiblePair* second) {
+void Totals::add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
+                 const Owners& owners, Progress& progress, const AdmissiblePair* second) {
   LawField<D> law(problem.problem.material);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
@@ -60,7 +62,7 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     const TriangleSums own = sums(t, law, laws);
     const double o = oscillation<D>(problem, t, laws, progress);
     all += own;
-    all.known += o * (2 * std::sqrt(own.moved) + std::sqrt(own.span));
+    all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;
     const double of_gap = std::pow(std::sqrt(own.gap + own.slack) + o, 2),
                  of_correction = std::pow(std::sqrt(own.correction + own.slack) + o, 2);
@@ -94,7 +96,8 @@ void Totals::add_work_of_traction(const Discretization& problem, const Admissibl
       const double s = edge_rule().points[q];
       const Eigen::VectorXd value = v.on_edge(edge, s);
       for (int c = 0; c < D; ++c) {
-        const double own = edge_rule().weights[q] * problem.mesh.length(edge) * problem.traction(edge, c, s) * value[c];
+        const double own =
+            edge_rule().weights[q] * problem.mesh.length(edge) * problem.traction(edge, c, s) * value[c];
         all.energy -= own;
         work += std::abs(own);
       }
@@ -129,18 +132,22 @@ ErrorBound bound_from(const Totals& totals) {
   const double gap = std::sqrt(totals.balanced_gap + sums.slack) + totals.carried,
                correction = std::sqrt(totals.balanced_correction + sums.slack) + totals.carried;
   const double p_square = gap * gap + totals.contact, radius = std::sqrt(p_square + totals.contact);
-  const double known = sums.known + totals.carried * (2 * std::sqrt(sums.moved) + std::sqrt(sums.span));
+  const double known = sums.known + totals.carried * (2 * std::sqrt(sums.moved + sums.slack) +
+                                                      std::sqrt(sums.span + sums.slack));
   double product = correction * radius;
   if (totals.second_counts)
-    product = std::min(product, least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) +
-                                    oscillation * radius);
-  bound.value = std::sqrt(totals.contact + (gap * gap + correction * correction + sums.direct_gap + sums.slack) / 2 +
-                          product + sums.skew + sums.slack);
+    product = std::min(product,
+                       least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) +
+                           oscillation * radius);
+  bound.value =
+      std::sqrt(totals.contact + (gap * gap + correction * correction + sums.direct_gap + sums.slack) / 2 +
+                product + sums.skew + sums.slack);
   const double of_stress = std::sqrt(sums.stress);
   bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
   // The sums are made of some million terms at most.
   constexpr double rounding = 1e-13;
-  const double unknown = sums.energy_slack + rounding * (std::abs(sums.strain) + std::abs(sums.energy) + totals.work);
+  const double unknown =
+      sums.energy_slack + rounding * (std::abs(sums.strain) + std::abs(sums.energy) + totals.work);
   bound.energy_upper = sums.energy + unknown;
   bound.energy_lower = sums.energy - unknown - p_square / 2;
   return bound;

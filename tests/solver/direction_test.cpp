@@ -111,6 +111,7 @@ TEST(Direction, TheMethodsAgree) {
 /// Of a foundation that no edge's normal is the normal of; the fine energy lies between the bounds of the coarse.
 TEST(Direction, TheErrorIsBounded) {
   Problem problem = Slanted{}.problem(Scheme::conforming, Vector(0.2, -1), falling_away);
+  std::get<Contact>(problem.boundary.at("floor")).gap = problems::formula("0.4 * x^2");
   const ErrorBound coarse = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
   problem.mesh.refine = 5;
   const double energy = solve(problem, {ActiveSet{}, {}}).summary.energy;

@@ -252,9 +252,9 @@ Problem random_punch(unsigned seed, Scheme scheme, double poisson, int n) {
   problem.mesh = {Divisions{n, n}, Pattern::right};
   problem.scheme = scheme;
   problem.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
-  const auto gap = [=](const Point& x, const Vector&) { return curvature * std::pow(x.x() - middle, 2); };
+  const std::string gap = std::to_string(curvature) + " * (x - " + std::to_string(middle) + ")^2";
   problem.boundary = {{"top", Fixed{VectorField(shift, -depth)}},
-                      {"bottom", Contact{Field(gap, "/test")}},
+                      {"bottom", Contact{problems::formula(gap)}},
                       {"left", Traction{VectorField(push, 0)}}};
   return problem;
 }
@@ -279,6 +279,19 @@ TEST(RandomPunch, TheBoundsOfTheEnergyOfCoarseMeshesEncloseThoseOfFineOnes) {
         EXPECT_LE(2 * (coarse.energy_upper - fine.energy_upper), coarse.value * coarse.value);
       }
   EXPECT_LE(not_guaranteed, 4);
+}
+
+/// Between the points where it is known a function may be anything.
+TEST(Certificate, GuaranteesNothingForAGapThatIsAFunction) {
+  Problem problem = problems::pressed_block(Scheme::conforming, Pattern::right, 0.3, 2);
+  Contact& contact = std::get<Contact>(problem.boundary.at("bottom"));
+  contact.gap = problems::formula("0.001 * x^2");
+  EXPECT_TRUE(solved(problem).summary.error_bound->guaranteed);
+  contact.gap = Field([](const Point& x, const Vector&) { return 0.001 * x.x() * x.x(); }, "/test");
+  const ErrorBound bound = *solved(problem).summary.error_bound;
+  EXPECT_FALSE(bound.guaranteed);
+  ASSERT_FALSE(bound.unmet.empty());
+  EXPECT_NE(bound.unmet[0].find("/test"), std::string::npos) << bound.unmet[0];
 }
 
 /// One edge touches, and has no pressure p* ≥ 0 with the moment of σ_h, though one with its force.
