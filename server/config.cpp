@@ -120,9 +120,16 @@ CLI::App* add_solve(CLI::App& app, SolveConfig& solve) {
   command->add_option(
       "--fields", solve.fields,
       "Members of the result, e.g. summary,contact (all if not given; summary is always there)");
-  command->add_option("--format", solve.format, "Of the result: json, cbor, or vtu for ParaView")
+  command
+      ->add_option("--format", solve.format, "Of the result: json, cbor, vtu for ParaView, or svg, a picture")
       ->capture_default_str()
-      ->check(CLI::IsMember({"json", "cbor", "vtu"}));
+      ->check(CLI::IsMember({"json", "cbor", "vtu", "svg"}));
+  command->add_option("--field", solve.picture,
+                      "What the picture shows: displacement, stress, von_mises, error, contact, history");
+  command
+      ->add_option("--deformed", solve.deformed,
+                   "So many times the displacement moves the points of a picture")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("FILE", solve.file, "Problem document; - reads standard input")->required();
   return command;
 }

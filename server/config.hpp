@@ -35,7 +35,9 @@ struct DaemonConfig {
 struct SolveConfig {
   std::string file;             ///< `-` is standard input
   std::string fields;           ///< empty: all
-  std::string format = "json";  ///< or `cbor` or `vtu`
+  std::string format = "json";  ///< or `cbor`, `vtu` or `svg`
+  std::string picture;          ///< what an SVG shows; empty: the displacement
+  std::optional<double> deformed;
 };
 
 /// `signorinid study`.

@@ -1,5 +1,6 @@
 #include "server/solve_command.hpp"
 
+#include "api/picture/picture.hpp"
 #include "api/result_document.hpp"
 #include "api/vtu.hpp"
 #include "server/local_solve.hpp"
@@ -7,39 +8,62 @@
 namespace signorini::server {
 namespace {
 
-BadInput bad_fields(const std::string& detail) {
-  return {{"bad-flag", "Bad flag", "--fields: " + detail}};
+BadInput bad_flag(const std::string& flag, const std::string& detail) {
+  return {{"bad-flag", "Bad flag", "--" + flag + ": " + detail}};
+}
+
+/// What `use` returns; a complaint about `/fields` and the like is one about the flag of that name.
+template <typename Use>
+auto with_flags(const Use& use) {
+  try {
+    return use();
+  } catch (const InvalidProblem& invalid) {
+    const Fault& fault = invalid.faults().front();
+    throw bad_flag(fault.where.substr(1), fault.detail);
+  }
 }
 
 /// The result as it is asked for.
 struct Form {
+  enum class File { document, vtu, picture };
+
+  File file = File::document;
   api::ResultFields fields;
-  bool vtu = false;
-  api::Format document = api::Format::json;  ///< if it is no .vtu file
+  api::Format document = api::Format::json;
+  api::Picture picture;
 };
 
 Form form_of(const SolveConfig& config) {
-  const bool vtu = config.format == "vtu";
-  if (vtu && !config.fields.empty()) throw bad_fields("a .vtu file has all its fields; leave the flag out");
-  try {
-    return {api::ResultFields::parse(config.fields), vtu,
-            config.format == "cbor" ? api::Format::cbor : api::Format::json};
-  } catch (const InvalidProblem& invalid) {
-    throw bad_fields(invalid.faults().front().detail);
-  }
+  Form form;
+  if (config.format == "vtu") form.file = Form::File::vtu;
+  if (config.format == "svg") form.file = Form::File::picture;
+  if (config.format == "cbor") form.document = api::Format::cbor;
+  if (form.file != Form::File::document && !config.fields.empty())
+    throw bad_flag("fields", "a file of the format " + config.format + " has no members; leave the flag out");
+  if (form.file != Form::File::picture && (!config.picture.empty() || config.deformed))
+    throw bad_flag(config.picture.empty() ? "deformed" : "field", "is for pictures; add --format svg");
+  return with_flags([&] {
+    form.fields = api::ResultFields::parse(config.fields);
+    form.picture = {api::Picture::field_named(config.picture), config.deformed};
+    return form;
+  });
 }
 
 /// Before the solve, which may take long.
-void require_available(const api::ResultFields& fields, const api::Request& request) {
-  try {
-    fields.require_available(components(request.problem.material));
-  } catch (const InvalidProblem& invalid) {
-    throw bad_fields(invalid.faults().front().detail);
-  }
+void require_available(const Form& form, const api::Request& request) {
+  with_flags([&] {
+    form.fields.require_available(components(request.problem.material));
+    if (form.file == Form::File::picture)
+      form.picture.require_available(components(request.problem.material));
+  });
 }
 
 bool write(const std::string& problem, const Ending& ending, const Form& form, const api::Sink& sink) {
-  if (form.vtu) return api::write_vtu(*ending.solution, sink);
+  if (form.file == Form::File::vtu) return api::write_vtu(*ending.solution, sink);
+  if (form.file == Form::File::picture) {
+    with_flags([&] { form.picture.require_available(*ending.solution); });
+    return api::write_picture(*ending.solution, form.picture, sink);
+  }
   const api::ResultHead head{{}, name(ending.status), problem};
   return api::write_document(form.document, sink, [&](api::DocumentWriter& out) {
     api::write_result(out, head, *ending.solution, form.fields);
@@ -53,7 +77,7 @@ int run_solve(const SolveConfig& config) {
     const Form form = form_of(config);
     const std::string text = read_input(config.file);
     const api::Request request = parse_input(text);
-    require_available(form.fields, request);
+    require_available(form, request);
     return solve_and_write(request, [&](const Ending& ending, const api::Sink& sink) {
       return write(text, ending, form, sink);
     });

@@ -44,6 +44,7 @@ void write_links(DocumentWriter& out, const Job& job) {
       .member("events", self + "/events")
       .member("result", self + "/result")
       .member("vtu", self + "/result.vtu")
+      .member("picture", self + "/picture.svg")
       .member("contact_csv", self + "/contact.csv")
       .member("history", self + "/history")
       .member("history_csv", self + "/history.csv")

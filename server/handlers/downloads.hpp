@@ -12,6 +12,11 @@ inline constexpr const char* vtu_media_type = "application/vnd.vtk";
 
 /// A result as files for other programs; each has the errors of the result itself (404, 409, 410).
 Response get_result_vtu(Service& service, const Request& request);
+
+inline constexpr const char* svg_media_type = "image/svg+xml";
+
+/// The picture that `field` and `deformed` in the query ask for.
+Response get_picture(Service& service, const Request& request);
 Response get_history_csv(Service& service, const Request& request);
 Response get_contact_csv(Service& service, const Request& request);
 /// 404 too if the problem has no study.

@@ -29,6 +29,7 @@ Router routes(Service& service) {
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
       long_reply("/v1/solves/{id}/result", document_types, get_result),
       long_reply("/v1/solves/{id}/result.vtu", {vtu_media_type}, get_result_vtu),
+      long_reply("/v1/solves/{id}/picture.svg", {svg_media_type}, get_picture),
       long_reply("/v1/solves/{id}/history.csv", {"text/csv"}, get_history_csv),
       long_reply("/v1/solves/{id}/contact.csv", {"text/csv"}, get_contact_csv),
       long_reply("/v1/solves/{id}/study.csv", {"text/csv"}, get_study_csv),

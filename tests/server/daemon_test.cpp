@@ -361,6 +361,14 @@ TEST(SolveCommand, WritesTheResultForParaView) {
   EXPECT_TRUE(process.standard_output().ends_with("</VTKFile>\n"));
 }
 
+TEST(SolveCommand, DrawsAPicture) {
+  ChildProcess process({"solve", "--format", "svg", "--field", "von_mises", "--deformed", "2", "-"},
+                       example("elastic-block").dump());
+  EXPECT_EQ(process.wait(60s), 0) << process.standard_error();
+  EXPECT_TRUE(process.standard_output().starts_with("<svg "));
+  EXPECT_TRUE(process.standard_output().ends_with("</svg>\n"));
+}
+
 TEST(SolveCommand, AnIterationThatDoesNotEndIsServedWithExitCode1) {
   json problem = example("paper-nonconforming");
   problem["solver"]["max_iterations"] = 3;
@@ -397,7 +405,10 @@ TEST(SolveCommand, BadInputHasExitCode2) {
        std::vector<std::vector<std::string>>{{"--fields", "everything"},
                                              {"--fields", "von_mises"},  // of a membrane
                                              {"--format", "vtk"},
-                                             {"--format", "vtu", "--fields", "mesh"}}) {
+                                             {"--format", "vtu", "--fields", "mesh"},
+                                             {"--format", "svg", "--field", "strain"},
+                                             {"--format", "svg", "--deformed", "2"},  // of a membrane
+                                             {"--field", "stress"}}) {
     std::vector<std::string> arguments{"solve", "-"};
     arguments.insert(arguments.begin() + 1, flags.begin(), flags.end());
     ChildProcess process(arguments, example("paper-nonconforming").dump());

@@ -13,12 +13,13 @@ class Downloads : public ServiceTest {
   }
 };
 
-const std::vector<std::string> files{"/result.vtu", "/history.csv", "/contact.csv"};
+const std::vector<std::string> files{"/result.vtu", "/picture.svg", "/history.csv", "/contact.csv"};
 
 TEST_F(Downloads, AreLinkedFromTheStatus) {
   const std::string path = solved("touches");
   const json links = json::parse(get(path)->body).at("links");
   EXPECT_EQ(links.at("vtu"), path + "/result.vtu");
+  EXPECT_EQ(links.at("picture"), path + "/picture.svg");
   EXPECT_EQ(links.at("history_csv"), path + "/history.csv");
   EXPECT_EQ(links.at("contact_csv"), path + "/contact.csv");
 }
@@ -49,6 +50,20 @@ TEST_F(Downloads, HoldTheResult) {
   EXPECT_TRUE(vtu.ends_with("</VTKFile>\n"));
 }
 
+TEST_F(Downloads, HoldThePictureThatIsAskedFor) {
+  const std::string path = solved("touches") + "/picture.svg";
+  const auto picture = get(path);
+  EXPECT_EQ(picture->status, 200) << picture->body;
+  EXPECT_EQ(picture->get_header_value("Content-Type"), "image/svg+xml");
+  EXPECT_NE(picture->body.find("<title>displacement</title>"), std::string::npos);
+  EXPECT_NE(get(path + "?field=contact")->body.find("floor: pressure"), std::string::npos);
+  for (const std::string query :
+       {"field=strain", "field=von_mises", "deformed=1", "deformed=-1", "scale=2"}) {
+    const json problem = expect_problem(get(path + "?" + query), 400);
+    EXPECT_EQ(problem.at("errors").at(0).at("parameter"), query.substr(0, query.find('='))) << query;
+  }
+}
+
 TEST_F(Downloads, AreThereForTheLastIterateOfAMethodThatDiverged) {
   const std::string path = solved("diverges");
   for (const std::string& file : files) EXPECT_EQ(get(path + file)->status, 200) << file;
@@ -72,7 +87,7 @@ TEST_F(Downloads, HonourTheAcceptHeader) {
     SCOPED_TRACE(file);
     expect_problem(client_.Get(path + file, {{"Accept", "application/json"}}), 406);
     EXPECT_EQ(client_.Get(path + file, {{"Accept", "*/*"}})->status, 200);
-    EXPECT_EQ(client_.Get(path + file, {{"Accept", "text/csv;q=0.5, application/vnd.vtk"}})->status, 200);
+    EXPECT_EQ(client_.Get(path + file, {{"Accept", "text/csv;q=0.5, application/vnd.vtk, image/*;q=0.1"}})->status, 200);
   }
 }
 

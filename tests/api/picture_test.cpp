@@ -1,0 +1,186 @@
+#include "api/picture/picture.hpp"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <regex>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <boost/property_tree/xml_parser.hpp>
+
+#include "api/picture/colour_map.hpp"
+#include "written_by.hpp"
+
+namespace signorini::api {
+namespace {
+
+/// A rectangle of two triangles, 2 by 1.
+Solution two_triangles(int components, const Eigen::MatrixXd& displacement) {
+  Solution solution;
+  solution.components = components;
+  solution.mesh = make_mesh({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {"left", "other"},
+                            {{{3, 0}, 0}, {{0, 1}, 1}, {{1, 2}, 1}, {{2, 3}, 1}});
+  solution.displacement = displacement;
+  solution.displacement_at_points = Eigen::MatrixXd::Zero(components, 4);
+  solution.stress_at_centroids = Eigen::MatrixXd::Ones(components + 1, 2);
+  if (components == 2) solution.out_of_plane_stress = Eigen::Vector2d::Zero();
+  return solution;
+}
+
+/// The picture, which must be XML.
+std::string drawn(const Solution& solution, const Picture& picture = {}) {
+  picture.require_available(solution);
+  const std::string text =
+      written_by([&](const Sink& sink) { return write_picture(solution, picture, sink); });
+  std::istringstream stream(text);
+  boost::property_tree::ptree tree;
+  EXPECT_NO_THROW(boost::property_tree::read_xml(stream, tree)) << text;
+  return text;
+}
+
+/// The area that each band of colour has on the body, in pixels, from the shapes of the paths.
+std::map<int, double> areas(const std::string& svg) {
+  std::map<int, double> all;
+  const std::regex path("<path class=\"f c([0-9]+)\" d=\"([^\"]*)\""), point("([ML])([-0-9.]+) ([-0-9.]+)");
+  for (std::sregex_iterator p(svg.begin(), svg.end(), path), end; p != end; ++p) {
+    std::istringstream shapes((*p)[2].str());
+    for (std::string shape; std::getline(shapes, shape, 'z');) {
+      std::vector<Point> corners;
+      for (std::sregex_iterator c(shape.begin(), shape.end(), point); c != end; ++c)
+        corners.emplace_back(std::stod((*c)[2]), std::stod((*c)[3]));
+      double area = 0;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Point &a = corners[i], &b = corners[(i + 1) % corners.size()];
+        area += (a.x() * b.y() - a.y() * b.x()) / 2;
+      }
+      all[std::stoi((*p)[1])] += std::abs(area);
+    }
+  }
+  return all;
+}
+
+/// 580 pixels for a length of 2.
+constexpr double area_of_picture = 580 * 290;
+
+TEST(Picture, ShowsOneColourInEachTriangleOfAConstantField) {
+  const std::map<int, double> bands = areas(drawn(two_triangles(1, Eigen::RowVector2d(1, 3))));
+  ASSERT_EQ(bands.size(), 2u);
+  EXPECT_NEAR(bands.at(0), area_of_picture / 2, 1);
+  EXPECT_NEAR(bands.at(ColourMap::kBands - 1), area_of_picture / 2, 1);
+}
+
+/// u = x is as often in each band as in any other.
+TEST(Picture, ShowsBandsOfALinearField) {
+  Eigen::MatrixXd linear(3, 2);
+  linear << 0, 0, 2, 2, 2, 0;
+  const std::map<int, double> bands = areas(drawn(two_triangles(1, linear)));
+  ASSERT_EQ(bands.size(), static_cast<std::size_t>(ColourMap::kBands));
+  for (const auto& [band, area] : bands) EXPECT_NEAR(area, area_of_picture / ColourMap::kBands, 3) << band;
+}
+
+/// |u| is 1 in one triangle and jumps to 2.
+TEST(Picture, KeepsJumps) {
+  Eigen::MatrixXd jump(6, 2);
+  jump << 1, 0, 0, 2, 1, 0, 0, -2, 1, 0, 0, 2;
+  const std::map<int, double> bands = areas(drawn(two_triangles(2, jump)));
+  ASSERT_EQ(bands.size(), 2u);
+  EXPECT_NEAR(bands.begin()->second, area_of_picture / 2, 1);
+}
+
+TEST(Picture, HasNoColourForSignsThatAreNotThere) {
+  EXPECT_EQ(ColourMap(-1, 3).low(), -3);
+  EXPECT_EQ(ColourMap(-1, 3).colour(0), "#2166ac");
+  EXPECT_EQ(ColourMap(1, 3).low(), 1);
+  EXPECT_EQ(ColourMap(1, 3).colour(0), "#440154");
+  EXPECT_EQ(ColourMap(1, 3).colour(ColourMap::kBands - 1), "#fde725");
+  EXPECT_EQ(ColourMap(2, 2).band(2), 0);
+  EXPECT_EQ(ColourMap(-1.7e308, 1.7e308).band(1.7e308), ColourMap::kBands - 1);
+}
+
+TEST(Picture, MovesThePointsOfABody) {
+  Solution solution = two_triangles(2, Eigen::MatrixXd::Ones(2, 2));
+  solution.displacement_at_points << 0, 1, 1, 0, 0, 0, 0, 0;  // twice as long if moved twice
+  Picture picture;
+  EXPECT_NE(drawn(solution, picture).find("height=\"374\""), std::string::npos);
+  picture.deformed = 2;
+  const std::map<int, double> bands = areas(drawn(solution, picture));
+  EXPECT_NEAR(bands.begin()->second, 580 * 145, 2);
+  picture.deformed = 1e200;
+  EXPECT_THROW(drawn(solution, picture), InvalidProblem);
+}
+
+TEST(Picture, ShowsStresses) {
+  Solution solution = two_triangles(2, Eigen::MatrixXd::Ones(2, 2));
+  solution.stress_at_centroids << 1, 0, -5, 0, 0, 2;  // principal stresses 1 and −5, ±2
+  const std::string principal = drawn(solution, {Picture::Field::stress, {}});
+  EXPECT_NE(principal.find(">-5</text>"), std::string::npos) << principal;
+  EXPECT_NE(principal.find(">5</text>"), std::string::npos);
+  const std::string equivalent = drawn(solution, {Picture::Field::von_mises, {}});
+  EXPECT_NE(equivalent.find(">5.57</text>"), std::string::npos);  // √31
+  EXPECT_NE(equivalent.find(">3.46</text>"), std::string::npos);  // √12
+}
+
+TEST(Picture, RefusesWhatIsNotThere) {
+  const Solution membrane = two_triangles(1, Eigen::RowVector2d(1, 3));
+  const auto where = [&](const Picture& picture) -> std::string {
+    try {
+      picture.require_available(membrane);
+    } catch (const InvalidProblem& invalid) {
+      return invalid.faults().front().where;
+    }
+    return "";
+  };
+  EXPECT_EQ(where({Picture::Field::von_mises, {}}), "/field");
+  EXPECT_EQ(where({Picture::Field::error, {}}), "/field");
+  EXPECT_EQ(where({Picture::Field::displacement, 2}), "/deformed");
+  EXPECT_EQ(where({Picture::Field::history, 2}), "/deformed");
+  EXPECT_EQ(where({Picture::Field::stress, {}}), "");
+  EXPECT_EQ(Picture::field_named(""), Picture::Field::displacement);
+  try {
+    Picture::field_named("stres");
+    ADD_FAILURE();
+  } catch (const InvalidProblem& invalid) {
+    EXPECT_NE(invalid.faults().front().detail.find("did you mean \"stress\""), std::string::npos)
+        << invalid.faults().front().detail;
+  }
+}
+
+TEST(Picture, OfTheContactMarksWhereItTouchesAndKeepsNamesText) {
+  Solution solution = two_triangles(1, Eigen::RowVector2d(1, 3));
+  solution.contact = {{"<script>alert(1)</script> & co",
+                       {{0, 0}, {1, 0}, {2, 0}, {3, 0}},
+                       {0, 0, 0.5, 1},
+                       {2, 1, 0, 0},
+                       {0, 0, 0, 0},
+                       {1, 1, 1, 1},
+                       {false, false, true, true}}};
+  const std::string svg = drawn(solution, {Picture::Field::contact, {}});
+  EXPECT_EQ(svg.find("<script"), std::string::npos);
+  EXPECT_NE(svg.find("&lt;script>alert(1)&lt;/script> &amp; co: pressure"), std::string::npos);
+  // 620 pixels for a length of 3; rows 0 and 1 touch, with half a length beyond the last: one strip in each
+  // plot.
+  const std::string strip = "<rect class=\"closed\" x=\"70\" y=\"40\" width=\"310\" height=\"150\"/>";
+  EXPECT_NE(svg.find(strip), std::string::npos) << svg;
+  EXPECT_NE(drawn(two_triangles(1, Eigen::RowVector2d(1, 3)), {Picture::Field::contact, {}}).find("No part"),
+            std::string::npos);
+}
+
+TEST(Picture, OfTheHistoryHasACurveForEachResidualThatIsNotZero) {
+  Solution solution = two_triangles(1, Eigen::RowVector2d(1, 3));
+  for (int i = 1; i <= 3; ++i) {
+    Iteration row;
+    row.number = i;
+    row.penetration = std::pow(10, -i);
+    row.clearance_change = i == 2 ? 0 : std::pow(10, 1 - i);  // no logarithm in between
+    solution.history.push_back(row);
+  }
+  const std::string svg = drawn(solution, {Picture::Field::history, {}});
+  EXPECT_NE(svg.find(">penetration</text>"), std::string::npos);
+  EXPECT_EQ(svg.find(">equilibrium</text>"), std::string::npos);
+  EXPECT_NE(svg.find(">1e-2</text>"), std::string::npos) << svg;
+  EXPECT_NO_THROW(drawn(two_triangles(1, Eigen::RowVector2d(1, 3)), {Picture::Field::history, {}}));
+}
+
+}  // namespace
+}  // namespace signorini::api
