@@ -126,10 +126,8 @@ CLI::App* add_solve(CLI::App& app, SolveConfig& solve) {
       ->check(CLI::IsMember({"json", "cbor", "vtu", "svg"}));
   command->add_option("--field", solve.picture,
                       "What the picture shows: displacement, stress, von_mises, error, contact, history");
-  command
-      ->add_option("--deformed", solve.deformed,
-                   "So many times the displacement moves the points of a picture")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--deformed", solve.deformed,
+                      "So many times the displacement moves the points of a picture");
   command->add_option("FILE", solve.file, "Problem document; - reads standard input")->required();
   return command;
 }

@@ -42,6 +42,8 @@ Form form_of(const SolveConfig& config) {
     throw bad_flag("fields", "a file of the format " + config.format + " has no members; leave the flag out");
   if (form.file != Form::File::picture && (!config.picture.empty() || config.deformed))
     throw bad_flag(config.picture.empty() ? "deformed" : "field", "is for pictures; add --format svg");
+  if (config.deformed && !(*config.deformed >= 0 && *config.deformed <= api::Picture::most_deformed))
+    throw bad_flag("deformed", "must be a number from 0 to 1e15");
   return with_flags([&] {
     form.fields = api::ResultFields::parse(config.fields);
     form.picture = {api::Picture::field_named(config.picture), config.deformed};

@@ -34,16 +34,23 @@ constexpr Stops blue_to_red{{{0x21, 0x66, 0xac},
 
 }  // namespace
 
-ColourMap::ColourMap(double low, double high) : diverges_(low < 0 && high > 0), low_(low), high_(high) {
-  if (diverges_) {
+ColourMap::ColourMap(double low, double high)
+    : diverges_(low < 0 && high > 0),
+      is_single_(high / 2 - low / 2 <= 1e-10 * std::max(std::abs(low), std::abs(high))),
+      low_(low),
+      high_(high) {
+  if (is_single_) {
+    const double width = low == 0 ? 1 : std::abs(low) / 2;
+    low_ = low - width;
+    high_ = low + width;
+  } else if (diverges_) {
     high_ = std::max(high, -low);
     low_ = -high_;
   }
-  // One value needs one colour; the width only has to be there.
-  if (!(high_ > low_)) high_ = low_ + (low_ == 0 ? 1 : std::abs(low_));
 }
 
 int ColourMap::band(double value) const {
+  if (is_single_) return kBands / 2;
   // Halves, as the difference of large numbers may leave the range of double precision.
   const double share = (value / 2 - low_ / 2) / (high_ / 2 - low_ / 2);
   return static_cast<int>(std::clamp(share * kBands, 0., kBands - 1.));

@@ -10,7 +10,8 @@ class ColourMap {
  public:
   static constexpr int kBands = 32;
 
-  /// The range of signed values is widened until 0 is in its middle; an empty one is given some width.
+  /// The range of signed values is widened until 0 is in its middle. Values that differ by rounding are one,
+  /// with a colour from the middle of a range about it.
   ColourMap(double low, double high);
 
   double low() const { return low_; }
@@ -24,7 +25,7 @@ class ColourMap {
   std::string colour(int band) const;
 
  private:
-  bool diverges_;
+  bool diverges_, is_single_;
   double low_, high_;
 };
 

@@ -20,9 +20,11 @@ struct Picture {
   enum class Field { displacement, stress, von_mises, error, contact, history };
 
   Field field = Field::displacement;
-  /// The points are moved by so many times the displacement of an elastic body; nothing: they stay.
-  /// Foundations are drawn where the gap is, so many times as far away.
+  /// The points are moved by so many times the displacement of an elastic body, from 0 to most_deformed;
+  /// nothing: they stay. Foundations are drawn where the gap is, so many times as far away.
   std::optional<double> deformed;
+
+  static constexpr double most_deformed = 1e15;
 
   /// `displacement` and so on; empty is `displacement`. Throws InvalidProblem at `/field`.
   static Field field_named(std::string_view name);

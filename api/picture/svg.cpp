@@ -100,14 +100,20 @@ void Svg::put(std::string_view name, double length) {
   out_.put('"');
 }
 
+/// What XML has no characters for, controls, U+FFFE and U+FFFF, is left out.
 void Svg::put_escaped(std::string_view text) {
-  for (const char c : text) {
-    if (c == '<')
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::string_view rest = text.substr(i);
+    if (rest.starts_with("\xef\xbf\xbe") || rest.starts_with("\xef\xbf\xbf"))
+      i += 2;
+    else if (text[i] == '<')
       out_.put("&lt;");
-    else if (c == '&')
+    else if (text[i] == '>')
+      out_.put("&gt;");
+    else if (text[i] == '&')
       out_.put("&amp;");
-    else if (static_cast<unsigned char>(c) >= ' ')  // XML has no other control characters
-      out_.put(c);
+    else if (static_cast<unsigned char>(text[i]) >= ' ')
+      out_.put(text[i]);
   }
 }
 

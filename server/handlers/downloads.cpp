@@ -54,12 +54,11 @@ Response get_result_vtu(Service& service, const Request& request) {
 }
 
 Response get_picture(Service& service, const Request& request) {
-  constexpr double most_deformed = 1e15;
   allow_only(request.query, {"field", "deformed"});
   api::Picture picture;
   picture.field =
       with_picture([&] { return api::Picture::field_named(parameter(request.query, "field").value_or("")); });
-  picture.deformed = number_parameter(request.query, "deformed", 0, most_deformed);
+  picture.deformed = number_parameter(request.query, "deformed", 0, api::Picture::most_deformed);
   const JobWithResult about = find_job_with_result(service, request);
   with_picture([&] { picture.require_available(*about.result.solution); });
   return file_of(service, about, svg_media_type, [picture](const Solution& solution, const PieceSink& sink) {

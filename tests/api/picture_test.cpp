@@ -94,7 +94,10 @@ TEST(Picture, HasNoColourForSignsThatAreNotThere) {
   EXPECT_EQ(ColourMap(1, 3).low(), 1);
   EXPECT_EQ(ColourMap(1, 3).colour(0), "#440154");
   EXPECT_EQ(ColourMap(1, 3).colour(ColourMap::kBands - 1), "#fde725");
-  EXPECT_EQ(ColourMap(2, 2).band(2), 0);
+  // One value, but for rounding.
+  EXPECT_EQ(ColourMap(3, 3 + 4e-15).band(3), ColourMap(3, 3 + 4e-15).band(3 + 4e-15));
+  EXPECT_EQ(ColourMap(3, 3).start_of(ColourMap::kBands / 2), 3);
+  EXPECT_EQ(ColourMap(0, 0).low(), -1);
   EXPECT_EQ(ColourMap(-1.7e308, 1.7e308).band(1.7e308), ColourMap::kBands - 1);
 }
 
@@ -157,11 +160,14 @@ TEST(Picture, OfTheContactMarksWhereItTouchesAndKeepsNamesText) {
                        {false, false, true, true}}};
   const std::string svg = drawn(solution, {Picture::Field::contact, {}});
   EXPECT_EQ(svg.find("<script"), std::string::npos);
-  EXPECT_NE(svg.find("&lt;script>alert(1)&lt;/script> &amp; co: pressure"), std::string::npos);
+  EXPECT_NE(svg.find("&lt;script&gt;alert(1)&lt;/script&gt; &amp; co: pressure"), std::string::npos);
   // 620 pixels for a length of 3; rows 0 and 1 touch, with half a length beyond the last: one strip in each
   // plot.
   const std::string strip = "<rect class=\"closed\" x=\"70\" y=\"40\" width=\"310\" height=\"150\"/>";
   EXPECT_NE(svg.find(strip), std::string::npos) << svg;
+  solution.contact[0].name = "]]>\xef\xbf\xbf\x01 \xc3\xa9";
+  EXPECT_NE(drawn(solution, {Picture::Field::contact, {}}).find(">]]&gt; \xc3\xa9: pressure"),
+            std::string::npos);
   EXPECT_NE(drawn(two_triangles(1, Eigen::RowVector2d(1, 3)), {Picture::Field::contact, {}}).find("No part"),
             std::string::npos);
 }

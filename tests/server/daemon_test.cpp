@@ -408,6 +408,7 @@ TEST(SolveCommand, BadInputHasExitCode2) {
                                              {"--format", "vtu", "--fields", "mesh"},
                                              {"--format", "svg", "--field", "strain"},
                                              {"--format", "svg", "--deformed", "2"},  // of a membrane
+                                             {"--format", "svg", "--deformed", "nan"},
                                              {"--field", "stress"}}) {
     std::vector<std::string> arguments{"solve", "-"};
     arguments.insert(arguments.begin() + 1, flags.begin(), flags.end());
