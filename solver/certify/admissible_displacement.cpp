@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "certify/gap_bubble.hpp"
 #include "certify/potential.hpp"
 #include "certify/relaxation.hpp"
 #include "fem/edge_pieces.hpp"
@@ -429,71 +430,14 @@ void AdmissibleDisplacement::close(const ContactEdge& contact) {
 
 /// v_n ≤ g by a multiple of the bubble 4 s (1 − s).
 void AdmissibleDisplacement::lower_below(const ContactEdge& contact) {
-  const double needed = needed_bubble(contact);
-  if (std::isfinite(needed)) {
-    if (needed > 0) middles_.col(contact.edge) -= needed * direction(contact);
-  } else {
-    refuse(gap(contact).name() + " is not known to be finite near " +
-           to_string(EdgeLine(problem_.mesh, contact.edge).at(0.5)));
-  }
-}
-
-/// With r = g − v_n, r₀ ≥ 0 and r₁ ≥ 0 at the ends. If g is smooth, r = r₀ (1 − s) + r₁ s + s (1 − s) k with
-/// k = −r[0, s, 1] ∈ −½ r'', and r + 4 b s (1 − s) ≥ 0 if −(k + 4 b) ≤ (√r₀ + √r₁)². Else the edge is cut:
-/// next to an end r ≥ r₀ + s min r', and inside r by its values.
-double AdmissibleDisplacement::needed_bubble(const ContactEdge& contact) const {
-  const Field& own = gap(contact);
   const EdgeLine line(problem_.mesh, contact.edge);
-  const double begin = std::max(0., room(contact, 0)), end = std::max(0., room(contact, 1));
-  const double at_begin = along_contact(contact, 0), at_middle = along_contact(contact, 0.5),
-               at_end = along_contact(contact, 1);
-  const double second = 2 * (at_begin + at_end) - 4 * at_middle;  // ½ v_n''
-  const double rounding = kSmall * (std::abs(at_begin) + std::abs(at_middle) + std::abs(at_end));
-  const double roots = std::pow(std::sqrt(begin) + std::sqrt(end), 2);
-  const Interval curvature = series_on(own, line, Interval(0, 1), 2)[2];
-  const double of_whole = (curvature.upper() - second - roots) / 4;
-  if (of_whole <= rounding) return std::max(0., of_whole);
-
-  double needed = 0;
-  const auto slope_of_v = [&](const Interval& s) { return (at_end - at_begin - second) + 2 * second * s; };
-  const auto value_of_v = [&](const Interval& s) {
-    const double middle = boost::numeric::median(s);
-    const Interval way = s - middle;
-    return (1 - middle) * at_begin + middle * at_end - middle * (1 - middle) * second +
-           (at_end - at_begin - second + 2 * second * middle) * way + second * way * way;
-  };
-  constexpr int kFirstCuts = 16, kMostCuts = 4000;
-  std::vector<Interval> open;
-  for (int i = 0; i < kFirstCuts; ++i) open.emplace_back(1. * i / kFirstCuts, (i + 1.) / kFirstCuts);
-  for (int cuts = kFirstCuts; !open.empty();) {
-    const Interval s = open.back();
-    open.pop_back();
-    const Series g = series_on(own, line, s, 1);
-    double takes;
-    if (s.lower() == 0 && is_known(g[1])) {
-      takes = -(g[1] - slope_of_v(s)).lower() / (4 * (1 - s.upper()));
-    } else if (s.upper() == 1 && is_known(g[1])) {
-      takes = (g[1] - slope_of_v(s)).upper() / (4 * s.lower());
-    } else {
-      // By the values, or by the value in the middle and the slopes, whichever tells more.
-      const double middle = boost::numeric::median(s);
-      const Interval by_slopes = is_known(g[1]) ? line.value(own, middle) + g[1] * (s - middle) : kAnything;
-      const double lowest = std::max(g[0].lower(), by_slopes.lower()) - value_of_v(s).upper();
-      takes = -lowest / (4 * std::min(s.lower() * (1 - s.lower()), s.upper() * (1 - s.upper())));
-    }
-    const double width = s.upper() - s.lower();
-    // A cell that asks for more than the others is looked at again while that can change it.
-    const bool may_change = is_known(g[1]) ? width > 1. / 4096 : width > 1e-9 && cuts < kMostCuts;
-    if (takes > needed * 1.05 + rounding && may_change) {
-      cuts += 2;
-      const double middle = boost::numeric::median(s);
-      open.emplace_back(middle, s.upper());
-      open.emplace_back(s.lower(), middle);
-      continue;
-    }
-    needed = std::max(needed, takes);
-  }
-  return std::min(needed + rounding, std::max(of_whole, rounding));
+  const double needed = bubble_below_gap(
+      gap(contact), line, {along_contact(contact, 0), along_contact(contact, 0.5), along_contact(contact, 1)},
+      {room(contact, 0), room(contact, 1)});
+  if (!std::isfinite(needed))
+    refuse(gap(contact).name() + " is not known to be finite near " + to_string(line.at(0.5)));
+  else if (needed > 0)
+    middles_.col(contact.edge) -= needed * direction(contact);
 }
 
 void AdmissibleDisplacement::add_lift(int edge, const Values& d) {

@@ -23,8 +23,8 @@ const Field& gap_on(const Discretization& problem, const ContactEdge& contact);
 /// It is quadratic on every triangle. Its values at the points are those of displacement_at_corners(), made
 /// admissible; its mean over each edge is that of the trace multiplier m, so that it inherits the balance of
 /// volume ∫ tr C σ_h = ∫ m·n of every triangle. What a boundary value has beyond its quadratic part is lifted
-/// into the triangle behind the edge as a polynomial, and what that leaves of u_D by a function of which only a bound
-/// is known: LiftRest.
+/// into the triangle behind the edge as a polynomial, and what that leaves of u_D by a function of which only
+/// a bound is known: LiftRest.
 ///
 /// v_n ≤ g holds for all values that the gap is enclosed by, wherever they lie between the nodes.
 class AdmissibleDisplacement {
@@ -93,7 +93,6 @@ class AdmissibleDisplacement {
   void meet(const ContactEdge& contact);
   void close(const ContactEdge& contact);
   void lower_below(const ContactEdge& contact);
-  double needed_bubble(const ContactEdge& contact) const;
   void add_lift(int edge, const Values& d);
   void refuse(const std::string& reason);
   void refuse_point(int point);
