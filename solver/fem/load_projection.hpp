@@ -8,6 +8,8 @@
 
 namespace signorini {
 
+struct CellBudget;
+
 /// The body load f on one triangle as scheme and certificate see it: by its projection Π₂f onto P2, which
 /// does the work of f on what is quadratic, and by the Πf that stresses balance. That is Π₂f, or the
 /// projection onto P1 where f jumps: to balance what it has between P1 and P2, too, would cost more than to
@@ -36,6 +38,10 @@ class LoadProjection {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
+  /// `largest`: of |f|; `of_jumps`: what integrals along curves may be off by, relative to it.
+  void project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
+                  double of_jumps, CellBudget& budget, ProjectedLoad& load);
+
   std::vector<ProjectedLoad> all_;
   std::vector<std::string> unmet_;
 };

@@ -14,10 +14,6 @@
 namespace signorini {
 namespace {
 
-/// What the integrals of a function that jumps along a curve, on a few triangles, may be off by, in
-/// tolerances.
-constexpr double kToleranceOfJumps = 500;
-
 using Nodes = Projection::Nodes;
 
 /// ∫ φ_i φ_j over the reference triangle for the basis of P2.
@@ -135,12 +131,13 @@ class Samples {
 
 class Sampler {
  public:
-  Sampler(const Field& field, const std::array<Point, 3>& corners, double tolerance, CellBudget& budget)
-      : field_(field), map_(corners), tolerance_(tolerance) {
+  Sampler(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
+          CellBudget& budget)
+      : field_(field), map_(corners), tolerance_(tolerance.smooth) {
     const Field* fields[] = {&field};
     const Settled settled = [&](const Corners& cell, double share) { return add_smooth(cell, share); };
-    const Acceptance of_smooth = mean_remainder_below(tolerance),
-                     of_jump = mean_remainder_below(kToleranceOfJumps * tolerance);
+    const Acceptance of_smooth = mean_remainder_below(tolerance.smooth),
+                     of_jump = mean_remainder_below(tolerance.of_jumps);
     const Acceptance accept = [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
       return (is_undecided_ ? of_jump : of_smooth)(models, share, of_cell);
     };
@@ -154,19 +151,23 @@ class Sampler {
   using Corners = std::array<Point, 3>;
 
   bool add_smooth(const Corners& cell, double share) {
-    const Series series = series_on_triangle(*field_.formula(), {map_(cell[0]), map_(cell[1]), map_(cell[2])},
-                                             Series::kMost, is_undecided_);
+    const Corners place{map_(cell[0]), map_(cell[1]), map_(cell[2])};
+    const Formula& formula = *field_.formula();
+    // Most cells lie on curves: there its derivatives are not known, nor worth their work.
+    (void)series_on_triangle(formula, place, 0, is_undecided_);
+    samples_.jumps = samples_.jumps || is_undecided_;
+    if (is_undecided_) return false;
+    const Series series = series_on_triangle(formula, place, Series::kMost, is_undecided_);
     const auto r = [&](int k) { return largest(series[k]); };
     const double allowed = tolerance_ / std::sqrt(share);
-    for (const int degree : {8, 10}) {
-      if (!(2 * r(degree) <= allowed)) continue;
+    for (const int degree : {5, 8, 10}) {
+      if (degree == 5 ? r(3) > 0 : !(2 * r(degree) <= allowed)) continue;
       add(cell, share, degree);
       samples_.force += share * r(degree);
       samples_.work += share * r(degree - 1);
       samples_.value_square += share / 2 * 4 * r(degree / 2 + 1) * r(degree / 2 + 1);
       return true;
     }
-    samples_.jumps = samples_.jumps || is_undecided_;
     return false;
   }
 
@@ -213,8 +214,8 @@ Samples sampled(const Field& function, const AffineMap& map) {
 
 }  // namespace
 
-Projection project(const Field& field, const std::array<Point, 3>& corners, double tolerance,
-                   CellBudget& budget) {
+Projection project(const Field& field, const std::array<Point, 3>& corners,
+                   const ProjectionTolerance& tolerance, CellBudget& budget) {
   Projection own;
   if (const auto value = only_value(field, corners)) {
     own.quadratic.setConstant(*value);

@@ -24,10 +24,14 @@ struct Projection {
   bool is_finite = true;
 };
 
-/// With integrals that are off by about the tolerance, a value of f, and by some hundred times as much where
-/// f jumps. What is no formula is taken for what it is in the points of a rule.
-Projection project(const Field& field, const std::array<Point, 3>& corners, double tolerance,
-                   CellBudget& budget);
+/// What integrals may be off by, as values of f: where it is smooth, and where it jumps along a curve.
+struct ProjectionTolerance {
+  double smooth, of_jumps;
+};
+
+/// What is no formula is taken for what it is in the points of a rule.
+Projection project(const Field& field, const std::array<Point, 3>& corners,
+                   const ProjectionTolerance& tolerance, CellBudget& budget);
 
 /// Π₁ of a polynomial of P2, and its norm.
 Projection::Nodes linear_part(const Projection::Nodes& quadratic);

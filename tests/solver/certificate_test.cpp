@@ -147,10 +147,11 @@ TEST(Certificate, OfThePapersProblemIsCloseToItsError) {
     }
 }
 
-/// The load jumps along lines that no mesh has: what each triangle's balance lacks is paid for.
+/// The load jumps along lines and a circle that no mesh has: what each triangle's balance lacks is paid for.
 TEST(Certificate, OfALoadThatJumpsThroughTheBodyIsCloseToItsError) {
   for (const Scheme scheme : schemes)
-    for (const char* load : {"x < 0.3 ? 10 : -10", "x + 0.7*y < 0.61 ? 10 : -5"}) {
+    for (const char* load : {"x < 0.3 ? 10 : -10", "x + 0.7*y < 0.61 ? 10 : -5",
+                             "(x - 0.45)^2 + (y - 0.55)^2 < 0.083 ? 10 : -10"}) {
       Problem problem = problems::paper(Scheme::conforming, sanitized ? 8 : 32);
       problem.body = problems::formula(load);
       problem.mesh.refine = 2;

@@ -16,7 +16,7 @@ const std::array<Point, 3> kReference{Point(0, 0), Point(1, 0), Point(0, 1)};
 
 Projection projection_of(const std::string& formula) {
   CellBudget budget{1'000'000};
-  return project(problems::formula(formula), kReference, 1e-9, budget);
+  return project(problems::formula(formula), kReference, {1e-9, 5e-7}, budget);
 }
 
 /// ∫ sin(k x)² over the reference triangle.

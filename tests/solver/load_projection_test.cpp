@@ -1,0 +1,46 @@
+// Loads that jump along curves.
+#include "fem/load_projection.hpp"
+
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "mesh/domain_mesh.hpp"
+#include "problems/membrane.hpp"
+
+namespace signorini {
+namespace {
+
+double area(const std::array<Point, 3>& corners) {
+  const Vector a = corners[1] - corners[0], b = corners[2] - corners[0];
+  return (a.x() * b.y() - a.y() * b.x()) / 2;
+}
+
+/// The integrals of quadratic functions: by the middles of the edges.
+double integral(const LoadProjection& loads, const Mesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+    sum += area(mesh.corners(t)) / 3 * loads[t].projection.rightCols<3>().sum();
+  return sum;
+}
+
+/// Cells that the first triangles along the curve use up would leave the others with a load that is off by
+/// all of it.
+TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
+  const double exact = 10 * (2 * std::numbers::pi * 0.288 * 0.288 - 1);
+  for (const int n : {2, 8, 32, 64}) {
+    Problem problem = problems::paper(Scheme::conforming, n);
+    problem.body = problems::formula("(x - 0.45)^2 + (y - 0.55)^2 < 0.288^2 ? 10 : -10");
+    const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
+    const LoadProjection loads(problem, mesh);
+    EXPECT_TRUE(loads.unmet().empty());
+    double uncertain = 0;
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) uncertain += loads[t].uncertain_force;
+    EXPECT_LE(uncertain, 1e-4) << n;
+    EXPECT_GT(uncertain, 0) << n;
+    EXPECT_NEAR(integral(loads, mesh), exact, uncertain) << n;
+  }
+}
+
+}  // namespace
+}  // namespace signorini
