@@ -15,6 +15,8 @@ namespace {
 
 /// How far a foundation may be, in displacements, before it is drawn near; and how far it is then.
 constexpr double kFar = 1e4, kNear = 1e3;
+/// How often, before the displacement is taken for none.
+constexpr int kMostPoses = 12;
 
 /// The reach that the gaps should have beside the displacement; infinite if they are near already.
 double reach_for(const ClearanceSpace& space, const Fields& fields) {
@@ -29,6 +31,28 @@ bool touches_beyond(const ClearanceSpace& space, const Eigen::VectorXd& clearanc
   });
 }
 
+/// Nothing loads the body, and all that it moved by was noise; the foundation is drawn near all the way.
+Fields at_rest(Fields noise) {
+  noise.stress.setZero();
+  noise.displacement.setZero();
+  noise.clearance.setZero();
+  noise.coupling.setZero();
+  noise.outcome = Outcome::converged;
+  return noise;
+}
+
+/// The forces on the contact unknowns by the stress, w p.
+Eigen::VectorXd forces_on_unknowns(const Discretization& problem, const Eigen::MatrixXd& stress,
+                                   Eigen::Index count) {
+  Eigen::VectorXd on_rows, forces(count);
+  contact_forces(
+      problem, [&](int t) -> LocalVector { return stress.col(t); }, on_rows);
+  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i)
+    if (const int unknown = problem.clearance.rows[i].unknown; unknown >= 0)
+      forces[unknown] = on_rows[static_cast<Eigen::Index>(i)];
+  return forces;
+}
+
 }  // namespace
 
 bool is_far(const ClearanceSpace& space, double displacement) {
@@ -38,11 +62,11 @@ bool is_far(const ClearanceSpace& space, double displacement) {
 }
 
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
-                             const MeanStress& mean_stress, const Eigen::VectorXd& start) {
+                             const StateOfBody& body, const Eigen::VectorXd& start) {
   if (contact.size() == 0) return {};
   if (const auto* exact = std::get_if<ActiveSet>(&method))
     return active_set(contact, *exact, progress, start);
-  return accelerated_uzawa(contact, std::get<AcceleratedUzawa>(method), progress, mean_stress, start);
+  return accelerated_uzawa(contact, std::get<AcceleratedUzawa>(method), progress, body, start);
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,
@@ -78,8 +102,8 @@ Fields CondensedProblem::find(const Method& method, Progress& progress, const Ei
     condense(progress);
   };
   Fields fields = find_as_posed(method, progress, start);
-  // Beside the largest gaps the first displacement may be but noise; each pose has ten digits less of it.
-  for (int most = 4; most > 0; --most) {
+  // Beside the largest gaps the first displacement may be but noise; each pose has some digits less of it.
+  for (int most = kMostPoses; most > 0; --most) {
     const double reach = reach_for(discretization_->clearance, fields);
     if (!std::isfinite(reach)) return fields;
     pose(reach);
@@ -90,10 +114,12 @@ Fields CondensedProblem::find(const Method& method, Progress& progress, const Ei
       return find_as_posed(method, progress, {});
     }
   }
-  return fields;
+  pose(0);
+  return at_rest(std::move(fields));
 }
 
-Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start) {
+Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
+                                       const Eigen::VectorXd& start) {
   // The Uzawa iteration leaves its clearances where its tolerance ended it.
   const bool exact = std::holds_alternative<ActiveSet>(method);
   Completed all;
@@ -104,11 +130,12 @@ Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
                    exact ? open_unknowns(clearance) : std::vector<int>{}, progress);
     completed = clearance;
   };
-  const auto mean_stress_for = [&](const Eigen::VectorXd& clearance) {
+  const auto body = [&](const Eigen::VectorXd& clearance) -> BodyState {
     complete_for(clearance);
-    return mean_stress(*discretization_, all.fields.stress, all.fields.displacement);
+    return {mean_stress(*discretization_, all.fields.stress, all.fields.displacement),
+            forces_on_unknowns(*discretization_, all.fields.stress, clearance.size())};
   };
-  const ContactResult found = find_clearance(contact(), method, progress, mean_stress_for, start);
+  const ContactResult found = find_clearance(contact(), method, progress, body, start);
   if (completed.size() == 0 || completed != found.clearance) complete_for(found.clearance);
   return {std::move(all.fields.stress), std::move(all.fields.displacement),
           all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
@@ -120,8 +147,8 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
   progress.enter(Phase::certify);
-  add_bound(discretization_->problem, certify(*discretization_, solution, fields.coupling, progress), solution,
-            progress);
+  add_bound(discretization_->problem, certify(*discretization_, solution, fields.coupling, progress),
+            solution, progress);
   return solution;
 }
 

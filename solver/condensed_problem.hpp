@@ -11,10 +11,10 @@
 namespace signorini {
 
 /// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
-/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `mean_stress` see
+/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `body` see
 /// accelerated_uzawa().
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
-                             const MeanStress& mean_stress, const Eigen::VectorXd& start = {});
+                             const StateOfBody& body, const Eigen::VectorXd& start = {});
 
 /// A foundation is so far away beside the displacement that its gap would drown it.
 bool is_far(const ClearanceSpace& space, double displacement);

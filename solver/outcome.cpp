@@ -13,7 +13,7 @@ bool is_answer(const Residuals& left, const PaperUzawa& method) {
 }
 
 bool is_answer(const Residuals& left, double tolerance) {
-  return std::max({left.penetration, left.tension, left.complementarity}) <= std::max(1e-9, 2 * tolerance);
+  return std::max({left.penetration, left.tension, left.complementarity}) <= std::max(1e-9, tolerance);
 }
 
 bool is_answer(const Residuals& left, const AcceleratedUzawa& method) {

@@ -89,7 +89,7 @@ std::vector<ContactPart> contact_parts(const ClearanceSpace& space, const Mesh& 
     part.pressure.push_back(pressure[i]);
     part.gap.push_back(row.gap + row.beyond);
     part.weight.push_back(row.weight);
-    part.open.push_back(clearance[i] > 0);
+    part.open.push_back(part.clearance.back() > 0);
   }
   return parts;
 }

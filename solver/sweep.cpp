@@ -102,7 +102,9 @@ class Sweep::Reference {
     const Eigen::VectorXd shift = of_unknowns(space(), *grown);
     contact_.c = condensed_.contact().c + contact_.s * shift;
     const ContactResult found =
-        find_clearance(contact_, settings.method, progress, [this](const auto&) { return mean_stress_; });
+        find_clearance(contact_, settings.method, progress, [this](const auto&) -> BodyState {
+          return {mean_stress_, {}};
+        });
     return entry_for(after, found, found.clearance - shift - clearance_, settings, progress);
   }
 

@@ -10,6 +10,10 @@
 namespace signorini {
 namespace {
 
+/// So often the body is asked for its state: what is off after that is rounding, which iterating does not
+/// mend.
+constexpr int kMostLooks = 4;
+
 /// D^(-1/2) S D^(-1/2), D the diagonal of S, as Spectra asks for its products.
 class ScaledComplement {
  public:
@@ -25,9 +29,7 @@ class ScaledComplement {
     const Eigen::VectorXd scaled = root_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
     Eigen::Map<Eigen::VectorXd>(out, rows()) = root_.cwiseProduct(s_ * scaled);
   }
-  double largest_row_sum() const {
-    return (root_.cwiseProduct(s_.cwiseAbs() * root_)).maxCoeff();
-  }
+  double largest_row_sum() const { return (root_.cwiseProduct(s_.cwiseAbs() * root_)).maxCoeff(); }
 
  private:
   const Eigen::MatrixXd& s_;
@@ -35,7 +37,8 @@ class ScaledComplement {
   Progress& progress_;
 };
 
-/// An upper bound of its largest eigenvalue. Lanczos comes from below, to the tolerance; the margin covers that.
+/// An upper bound of its largest eigenvalue. Lanczos comes from below, to the tolerance; the margin covers
+/// that.
 double largest_eigenvalue(const ContactComplement& contact, Progress& progress) {
   const Eigen::Index n = contact.size();
   if (n == 1) return 1;
@@ -56,6 +59,7 @@ class Iterate {
         diagonal_(contact.s.diagonal()),
         step_(kPart * 2 / largest_eigenvalue(contact, progress)),
         mean_stress_(kSmallPart * contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
+        lost_(Eigen::VectorXd::Zero(contact.size())),
         scaling_(contact.s, progress),
         lambda_(start.size() ? start : Eigen::VectorXd::Zero(contact.size())) {
     evaluate_gradient();
@@ -76,7 +80,12 @@ class Iterate {
   bool meets(double tolerance) const { return residuals().largest() <= tolerance || is_rounding(); }
 
   /// From now on.
-  void compare_with(double mean_stress) { mean_stress_ = mean_stress; }
+  void compare_with(const BodyState& body) {
+    mean_stress_ = body.mean_stress;
+    if (body.contact_forces.size() == 0) return;
+    lost_ += body.contact_forces - g_;
+    refresh();
+  }
 
   /// The conjugate gradients carry g along; this puts an end to what rounding has made of it.
   void refresh() {
@@ -103,7 +112,7 @@ class Iterate {
 
   void evaluate_gradient() {
     g_.noalias() = contact_.s * lambda_;
-    g_ -= contact_.c;
+    g_ += lost_ - contact_.c;
   }
 
   /// Whether what could still be gained on the open part outweighs what closed unknowns gain by opening, both
@@ -210,6 +219,7 @@ class Iterate {
   const Eigen::VectorXd diagonal_;
   const double step_;
   double mean_stress_;
+  Eigen::VectorXd lost_;  ///< what S λ − c lacks of the forces by the stress
   MultilevelScaling scaling_;
   Eigen::VectorXd lambda_, last_, g_;
   std::vector<int> open_;              ///< where the conjugate gradients work
@@ -221,15 +231,15 @@ class Iterate {
 }  // namespace
 
 ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const MeanStress& mean_stress,
-                                const Eigen::VectorXd& start) {
+                                Progress& progress, const StateOfBody& body, const Eigen::VectorXd& start) {
   Iterate iterate(contact, start, progress);
   const auto converged = [&] { return iterate.meets(settings.tolerance); };
+  int looks = 0;
   while (progress.iterations() < settings.max_iterations) {
     const bool in_time = progress.record(iterate.step());
     if (converged()) {
       iterate.refresh();
-      if (converged()) iterate.compare_with(mean_stress(iterate.clearance()));
+      if (converged() && looks++ < kMostLooks) iterate.compare_with(body(iterate.clearance()));
       if (converged()) return {iterate.clearance(), Outcome::converged};
     }
     if (!in_time) return {iterate.clearance(), Outcome::time_limit};

@@ -15,10 +15,11 @@ namespace signorini {
 ///
 /// It ends when the contact residuals are below the tolerance, or rounding. They are those of the answer: S
 /// does not know the stress in the body, so that a small part of the pressures at λ = 0 stands for it until
-/// they are met; then `mean_stress` is asked, and the iteration goes on with what it says until they are met
-/// by that. It is asked last for the clearance of a result that converged.
+/// they are met; and where the body is nearly incompressible, S λ − c has lost digits of the pressures that
+/// the stress has. So `body` is asked then, its answer put in the place of both, and the iteration goes on
+/// until the residuals are met by that. It is asked last for the clearance of a result that converged.
 ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const MeanStress& mean_stress,
+                                Progress& progress, const StateOfBody& body,
                                 const Eigen::VectorXd& start = {});
 
 }  // namespace signorini

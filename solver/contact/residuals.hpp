@@ -28,8 +28,14 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
 double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
                    const Eigen::MatrixXd& displacement);
 
-/// The mean stress of the body with these clearances.
-using MeanStress = std::function<double(const Eigen::VectorXd& clearance)>;
+/// What the stress in the body says of the contact.
+struct BodyState {
+  double mean_stress;
+  Eigen::VectorXd contact_forces;  ///< w p of the contact unknowns; empty if only S λ − c is known
+};
+
+/// The state of the body with these clearances.
+using StateOfBody = std::function<BodyState(const Eigen::VectorXd& clearance)>;
 
 /// Σ |next − last| / Σ |next|, the paper's criterion (section 6.1, iii); 0 if nothing changed.
 double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,

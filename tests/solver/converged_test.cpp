@@ -47,6 +47,23 @@ TEST(Converged, MeansThatTheResidualsAreMetWhereNothingTouches) {
                    "gap " + std::to_string(gap) + ", unit " + std::to_string(unit));
 }
 
+/// S has lost digits of the pressures; with the stress they are found again.
+TEST(Converged, MeansThatTheResidualsAreMetWhereTheBodyIsNearlyIncompressible) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double poisson : {0.4999, 0.49999, 0.499999}) {
+      Problem problem = problems::block(scheme, Pattern::right, 1, poisson);
+      problem.domain = Polygon{{{0, 0}, {1.5, 0}, {1.5, 0.6}, {0.7, 0.6}, {0.7, 1.2}, {0, 1.2}},
+                               {},
+                               {"bottom", "right", "ledge", "inner", "top", "left"}};
+      problem.mesh = MeshRequest(LargestEdge{sanitized ? 0.25 : 0.07});
+      problem.body = VectorField(Field(0), problems::formula("-0.03 + 0.03 * tanh(20 * (x - 0.26))"));
+      problem.boundary = {{"top", Fixed{VectorField(0, 0)}},
+                          {"left", Traction{VectorField(0.06, 0)}},
+                          {"bottom", Contact{problems::formula("0.07 - 0.03 * x")}}};
+      expect_met(problem, "ν = " + std::to_string(poisson));
+    }
+}
+
 TEST(Converged, MeansThatTheResidualsAreMetWhereContactIsTinyBesideTheLoad) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
     for (const double push : {1e-3, 1e-6, 1e-9}) {

@@ -11,7 +11,8 @@ namespace {
 Problem membrane(Scheme scheme, double gap) {
   Problem problem = problems::paper(scheme, 8);
   problem.body = problems::formula("x < 0.5 ? 1 : -1");
-  problem.boundary = {{"left", Fixed{}}, {"right", Contact{0.1}}, {"bottom", Contact{gap}}, {"top", Contact{0.}}};
+  problem.boundary = {
+      {"left", Fixed{}}, {"right", Contact{0.1}}, {"bottom", Contact{gap}}, {"top", Contact{0.}}};
   return problem;
 }
 
@@ -29,7 +30,8 @@ void expect_same(Pose pose, const Method& method, Scheme scheme, double far) {
   EXPECT_EQ(other.summary.outcome, Outcome::converged);
   EXPECT_NEAR(other.summary.energy, one.summary.energy, 1e-8 * std::abs(one.summary.energy));
   EXPECT_NEAR(other.summary.contact.force, one.summary.contact.force, 1e-6 * one.summary.contact.force);
-  const ErrorBound &near_bound = one.summary.error_bound.value(), &far_bound = other.summary.error_bound.value();
+  const ErrorBound &near_bound = one.summary.error_bound.value(),
+                   &far_bound = other.summary.error_bound.value();
   EXPECT_TRUE(far_bound.guaranteed);
   EXPECT_NEAR(far_bound.value, near_bound.value, 0.02 * near_bound.value);
   EXPECT_NEAR(far_bound.energy_upper, near_bound.energy_upper, 1e-5 * std::abs(near_bound.energy_upper));
@@ -49,6 +51,27 @@ TEST(FarGap, WorksAsWellAsANearOneThatIsNeverMet) {
           SCOPED_TRACE(gap);
           expect_same(pose, method, scheme, gap);
         }
+}
+
+/// Loads that are small beside gaps and stiffness by as many powers of ten as one likes, or none at all.
+TEST(FarGap, LetsHardlyLoadedBodiesRest) {
+  const auto summary = [](Scheme scheme, const Method& method, double load, double gap) {
+    Problem problem = problems::block(scheme, Pattern::right, 1, 0.3);
+    problem.body = VectorField(0.5 * load, -load);
+    problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{gap}}, {"right", Contact{gap}}};
+    return solve(problem, {method, {}}).summary;
+  };
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
+      const double energy = summary(scheme, method, 1, 1e3).energy;
+      for (const double load : {1e-20, 1e-60, 0.}) {
+        const Summary own = summary(scheme, method, load, 0.06);
+        EXPECT_EQ(own.outcome, Outcome::converged) << load;
+        EXPECT_NEAR(own.energy, load * load * energy, 1e-6 * load * load * std::abs(energy)) << load;
+        EXPECT_EQ(own.contact.length, 0) << load;
+        EXPECT_TRUE(own.error_bound->guaranteed) << load;
+      }
+    }
 }
 
 /// The foundation that is far at first is met after a variation, and the other way round.
@@ -73,7 +96,8 @@ TEST(FarGap, InASweep) {
       EXPECT_EQ(solution.sweep[i].error, "");
       EXPECT_EQ(solution.sweep[i].outcome, Outcome::converged);
       EXPECT_NEAR(solution.sweep[i].energy, alone.summary.energy, 1e-8 * std::abs(alone.summary.energy));
-      EXPECT_NEAR(solution.sweep[i].sums.force, alone.summary.contact.force, 1e-6 * alone.summary.contact.force);
+      EXPECT_NEAR(solution.sweep[i].sums.force, alone.summary.contact.force,
+                  1e-6 * alone.summary.contact.force);
     }
   }
 }

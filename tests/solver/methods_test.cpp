@@ -73,7 +73,11 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
         Eigen::VectorXd start;
         if (started) start = random(n, 1).cwiseAbs();
         const ContactResult result = accelerated_uzawa(
-            contact, {1e-12, 10000}, progress, [](const Eigen::VectorXd&) { return 0.; }, start);
+            contact, {1e-12, 10000}, progress,
+            [](const Eigen::VectorXd&) -> BodyState {
+              return {0, {}};
+            },
+            start);
         ASSERT_EQ(result.outcome, Outcome::converged) << n << ' ' << rank;
         EXPECT_GE(result.clearance.minCoeff(), 0);
         const double scale = (contact.s * x).norm() + contact.c.norm();
