@@ -77,12 +77,16 @@ struct Reaction {
   double moment = 0;
 };
 
-/// A pressure that is linear on an edge of Γ_C.
+/// A pressure on an edge of Γ_C, linear on the part from s = begin to s = end of it and 0 beside that.
 struct EdgePressure {
   int edge;
-  std::array<double, 2> at_ends;  ///< at its first and its second point
+  std::array<double, 2> at_ends;  ///< of the part
+  double begin = 0, end = 1;
 
-  double operator()(double s) const { return (1 - s) * at_ends[0] + s * at_ends[1]; }
+  double operator()(double s) const {
+    if (s < begin || s > end) return 0;
+    return ((end - s) * at_ends[0] + (s - begin) * at_ends[1]) / (end - begin);
+  }
 };
 
 /// A bound of the error in the energy norm, computed from the solution alone; see certify/certificate.hpp.
@@ -162,8 +166,8 @@ struct TrueErrors {
   std::optional<double> energy;        ///< |J(u) − J_h|
   /// What the error bound bounds: √(‖σ − σ_h‖²_C + 2 (J(v) − J(u)) + 2 <p*, g − u_n>) with its v and p*,
   /// where 2 (J(v) − J(u)) = ‖ε(u − v)‖²_E + 2 <p, g − v_n>. The last term counts if u is known, on the
-  /// edges of Solution::admissible_pressure. On patches the bound knows <p, g − v_n> of two pairs together only
-  /// (certify/THEORY.md, Theorem 3).
+  /// edges of Solution::admissible_pressure. On patches the bound knows <p, g − v_n> of two pairs together
+  /// only (certify/THEORY.md, Theorem 3).
   std::optional<double> total;
 };
 

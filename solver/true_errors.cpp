@@ -107,14 +107,15 @@ double contact_term(const Problem& problem, const VectorField& u, const Solution
       const Vector normal = mesh.outward_normal(edge);
       const Vector direction = contact->unit_direction(normal);
       for (int q = 0; q < EdgeRule::size; ++q) {
-        const double s = edge_rule().points[q];
+        const double length = found->second.end - found->second.begin;
+        const double s = found->second.begin + length * edge_rule().points[q];
         const Point x = mesh.points[a] + s * (mesh.points[b] - mesh.points[a]);
         const double u_n = solution.components == 1
                                ? -u(0, x, normal)
                                : direction.x() * u(0, x, normal) + direction.y() * u(1, x, normal);
         const Mesh::BoundaryPoint on_arc = mesh.on_boundary(edge, s);
         const double room = std::max(0., contact->gap(on_arc.x, on_arc.normal) - u_n);
-        sum += 2 * edge_rule().weights[q] * mesh.length(edge) * found->second(s) * room;
+        sum += 2 * edge_rule().weights[q] * length * mesh.length(edge) * found->second(s) * room;
       }
     }
   }

@@ -62,9 +62,10 @@ void serialize(Archive& archive, ContactPart& part) {
   archive(name, points, clearance, pressure, gap, weight, open);
 }
 
+/// The part of the edge came later and ends the list of a solution.
 template <class Archive>
 void serialize(Archive& archive, EdgePressure& pressure) {
-  auto& [edge, at_ends] = pressure;
+  auto& [edge, at_ends, begin, end] = pressure;
   archive(edge, at_ends);
 }
 
@@ -175,6 +176,8 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
   if (version >= 3)
     for (StudyRow& row : study) serialize_asymmetry(archive, row.error_bound);
   if (version >= 4) archive(mesh.circles, mesh.edge_circles, mesh.notes, error_squares, admissible_pressure);
+  if (version >= 5)
+    for (EdgePressure& own : admissible_pressure) archive(own.begin, own.end);
 }
 
 }  // namespace signorini
@@ -203,4 +206,4 @@ void serialize(Archive& archive, Verdict& verdict) {
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
 CEREAL_CLASS_VERSION(signorini::Summary, 3)
-CEREAL_CLASS_VERSION(signorini::Solution, 4)
+CEREAL_CLASS_VERSION(signorini::Solution, 5)

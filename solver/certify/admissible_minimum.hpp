@@ -24,7 +24,8 @@ struct MovingPressure {
   bool is_kept;  ///< it stays what it is
 };
 
-/// Those of both ends of edge i of the clearance space, which stay what they are where the contact is open.
+/// Those of both ends of edge i of the clearance space, which stay what they are where the contact is open or
+/// the pressure steep.
 ///
 /// `clearance`: a value a row of the clearance space.
 std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, const AdmissibleDisplacement& v,

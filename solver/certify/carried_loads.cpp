@@ -157,7 +157,7 @@ class Carrier {
       const ContactEdge& contact = problem_.clearance.edges[i];
       const double of_edge = mesh_.length(contact.edge),
                    force = of_edge * (pressure_.at_ends[i][0] + pressure_.at_ends[i][1]) / 2;
-      if (force == 0) continue;
+      if (force == 0 || pressure_.steep.contains(contact.edge)) continue;
       sides.push_back({contact.edge, contact.direction, force});
       total += force;
       length += of_edge;

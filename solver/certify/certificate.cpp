@@ -54,10 +54,9 @@ std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretizat
                                          const ContactPressure& pressure) {
   std::vector<EdgePressure> all;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
-    const int edge = problem.clearance.edges[i].edge;
-    const auto& [first, second] = pressure.at_ends[i];
-    const bool is_owned = owners[problem.mesh.edge_triangles[edge][0]] >= 0;
-    if (is_owned && (first != 0 || second != 0)) all.push_back({edge, {first, second}});
+    const EdgePressure own = pressure.on(problem, static_cast<int>(i));
+    const bool is_owned = owners[problem.mesh.edge_triangles[own.edge][0]] >= 0;
+    if (is_owned && (own.at_ends[0] != 0 || own.at_ends[1] != 0)) all.push_back(own);
   }
   return all;
 }

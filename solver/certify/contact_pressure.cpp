@@ -31,8 +31,8 @@ struct Potential {
       means.push_back(at_nodes[i] + admissible[i].forces[0] - given[i].forces[0]);
   }
 
-  /// Lets Ψ vanish where the chain ends freely: what it would have there is left to a constant traction on the last
-  /// link.
+  /// Lets Ψ vanish where the chain ends freely: what it would have there is left to a constant traction on
+  /// the last link.
   double take_lack(const AdmissibleChain& chain) {
     if (!chain.has_free_ends()) return 0;
     means.back() -= at_nodes.back() / 2;
@@ -48,6 +48,20 @@ struct Potential {
 
   std::vector<double> at_nodes, means;
 };
+
+/// The pressure that is linear and 0 at one end of a part of the edge, and 0 beside that, with the force and
+/// the moment of the linear one with these values at the ends, of which one is below 0. The two differ by
+/// what is orthogonal to linear functions.
+ContactPressure::Steep steep_on(int edge, const std::array<double, 2>& at_ends, double length) {
+  const auto& [p, q] = at_ends;
+  const double mean = (p + q) / 2, middle = (p + 2 * q) / (3 * (p + q));  // where the resultant acts
+  const bool at_the_end = middle > 0.5;
+  const double part = 3 * (at_the_end ? 1 - middle : middle), most = 2 * mean / part;
+  const double square = length * (most * most * part - (p * p + p * q + q * q)) / 3;
+  EdgePressure pressure{edge, {0, most}, 1 - part, 1};
+  if (!at_the_end) pressure = {edge, {most, 0}, 0, part};
+  return {pressure, std::sqrt(std::max(0., square))};
+}
 
 double value_or_zero(const std::unordered_map<int, double>& values, int key) {
   const auto found = values.find(key);
@@ -91,26 +105,43 @@ Quadratic<1> ContactPressure::potential_on(const Mesh& mesh, int t) const {
 AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
                                             const Eigen::VectorXd& clearance, double rounding) {
   using Transition = AdmissibleChain::Transition;
-  AdmissibleChain loaded(problem, given, clearance, Transition::loaded);
+  const AdmissibleChain loaded(problem, given, clearance, Transition::loaded, AdmissibleChain::kLinear);
   if (problem.spaces().components == 1) return loaded;
-  AdmissibleChain free(problem, given, clearance, Transition::free);
-  if (!free.has_free_ends() || free.balance(given, rounding)) return free;
+  for (const double least_share : {AdmissibleChain::kLinear, AdmissibleChain::kSteep})
+    for (const Transition transition : {Transition::free, Transition::loaded}) {
+      AdmissibleChain chain(problem, given, clearance, transition, least_share);
+      if (!chain.has_free_ends() || chain.balance(given, rounding)) return chain;
+    }
   // What the balance lacks is what it has, if nothing does better.
-  AdmissibleChain balanced = loaded;
-  return balanced.balance(given, rounding) ? balanced : loaded;
+  return loaded;
+}
+
+EdgePressure ContactPressure::on(const Discretization& problem, int i) const {
+  const int edge = problem.clearance.edges[i].edge;
+  const auto found = steep.find(edge);
+  return found == steep.end() ? EdgePressure{edge, at_ends[i]} : found->second.pressure;
+}
+
+double ContactPressure::beyond_linear(int edge) const {
+  const auto found = steep.find(edge);
+  return found == steep.end() ? 0 : found->second.beyond_linear;
 }
 
 void ContactPressure::keep(const Discretization& problem, const Chain& given, const Chain& admissible) {
   for (std::size_t i = 0; i < given.size(); ++i) {
+    const int edge = problem.clearance.edges[given[i].number].edge;
     std::array<double, 2> pressure = admissible[i].pressure(), old = given[i].pressure();
-    if (problem.mesh.edges[problem.clearance.edges[given[i].number].edge][0] != given[i].begin) {
+    const bool is_turned = problem.mesh.edges[edge][0] != given[i].begin;
+    if (is_turned) {
       std::swap(pressure[0], pressure[1]);
       std::swap(old[0], old[1]);
     }
-    for (int k = 0; k < 2; ++k) {
-      at_ends[given[i].number][k] = std::max(0., pressure[k]);
-      changes[given[i].number][k] = pressure[k] - old[k];
-    }
+    for (int k = 0; k < 2; ++k) changes[given[i].number][k] = pressure[k] - old[k];
+    if (admissible[i].is_steep())
+      steep.emplace(edge, steep_on(edge, pressure, given[i].length));
+    else
+      for (double& value : pressure) value = std::max(0., value);
+    at_ends[given[i].number] = pressure;
   }
 }
 
@@ -137,7 +168,8 @@ void ContactPressure::take_lack(const Discretization& problem, const Chain& link
   w.back().setZero();
   psi.back() = 0;
   // The derivative along the chain, at its begin and its end.
-  const Vector at_begin = -sign / length * (force + 4 * beta * n), at_end = -sign / length * (force - 4 * beta * n);
+  const Vector at_begin = -sign / length * (force + 4 * beta * n),
+               at_end = -sign / length * (force - 4 * beta * n);
   Lack lack{edge, force.norm(), 2. / 3 * std::abs(beta) * length};
   const bool on_the_left = domain_on_the_left(mesh, edge)[0] == links.back().begin;
   lack.traction << (on_the_left ? at_begin : at_end), (on_the_left ? at_end : at_begin);

@@ -7,6 +7,7 @@
 
 #include "certify/local_fields.hpp"
 #include "certify/pressure_chain.hpp"
+#include "solution.hpp"
 
 namespace signorini {
 
@@ -18,8 +19,11 @@ namespace signorini {
 /// curl of Ψ; for an elastic body Ψ is a vector, along the direction of each edge, and the Airy stress of a
 /// function ψ makes the change, so that moments balance too.
 ///
-/// A contact that is too short may have no pressure p* ≥ 0 with the force and the moment of p_h. What lacks then acts
-/// besides p* on the last edge of the chain, as a traction that Γ_D has to take: Lack.
+/// Where a body touches with a single edge, the linear pressure that has the force and the moment of p_h may
+/// be negative at one end. Then p* is steep: linear on a part of the edge next to the other end, with the
+/// same force and moment. How the two differ counts as oscillation(). A contact that is too short may have no
+/// such p* ≥ 0 either. What lacks then acts besides p* on the last edge of the chain, as a traction that Γ_D
+/// has to take: Lack.
 struct ContactPressure {
   /// ψ and ∇ψ at a point.
   struct Airy {
@@ -27,8 +31,8 @@ struct ContactPressure {
     Vector gradient = Vector::Zero();
   };
 
-  /// A traction on an edge of Γ_C besides p*: its force, its moment about the middle of the edge, and of an elastic body
-  /// its values at both ends, as EdgeTractions has them.
+  /// A traction on an edge of Γ_C besides p*: its force, its moment about the middle of the edge, and of an
+  /// elastic body its values at both ends, as EdgeTractions has them.
   struct Lack {
     int edge;
     double force, moment;
@@ -42,10 +46,23 @@ struct ContactPressure {
   /// Ψ on a triangle.
   Quadratic<1> potential_on(const Mesh& mesh, int t) const;
 
-  /// At the first and the second point of each edge of the clearance space.
+  /// p* on edge i of the clearance space.
+  EdgePressure on(const Discretization& problem, int i) const;
+
+  /// ‖p* − p‖ in L2 of an edge of the mesh for the linear p with the same force and moment.
+  double beyond_linear(int edge) const;
+
+  /// p*, or that linear p where p* is steep, at the first and the second point of each edge of the clearance
+  /// space.
   std::vector<std::array<double, 2>> at_ends;
-  /// (p* − p_h) at the same points.
+  /// How much that is more than p_h at the same points.
   std::vector<std::array<double, 2>> changes;
+  /// p* where it is steep, by the edge of the mesh, with what it has beyond linear functions.
+  struct Steep {
+    EdgePressure pressure;
+    double beyond_linear;
+  };
+  std::unordered_map<int, Steep> steep;
   /// Ψ, with the domain on the left, at points and at the middles of edges; 0 where it is not named.
   std::unordered_map<int, double> potential_at_points, potential_at_middles;
   /// ψ at points, for an elastic body.

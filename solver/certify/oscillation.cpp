@@ -9,20 +9,25 @@
 namespace signorini {
 
 template <int D>
-double oscillation(const Discretization& problem, int t, const LawOnMesh& laws, Progress& progress) {
+double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
+                   const LawOnMesh& laws, Progress& progress) {
   const auto corners = problem.mesh.corners(t);
   const ProjectedLoad& load = problem.body[t];
   double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
-  if (load.jumps && sum > 0) sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, progress));
+  if (load.jumps && sum > 0)
+    sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, progress));
   for (int e = 0; e < 3; ++e) {
     const int edge = problem.mesh.triangle_edges[t][e];
-    if (!problem.traction.acts_on(edge)) continue;
-    sum += linear_remainder_on_edge<D>(corners, e) * problem.traction[edge].rest;
+    const double rest =
+        problem.traction.acts_on(edge) ? problem.traction[edge].rest : pressure.beyond_linear(edge);
+    if (rest > 0) sum += linear_remainder_on_edge<D>(corners, e) * rest;
   }
   return sum == 0 ? 0 : sum * std::sqrt(laws.whole(t).softest);
 }
 
-template double oscillation<1>(const Discretization&, int, const LawOnMesh&, Progress&);
-template double oscillation<2>(const Discretization&, int, const LawOnMesh&, Progress&);
+template double oscillation<1>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
+                               Progress&);
+template double oscillation<2>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
+                               Progress&);
 
 }  // namespace signorini

@@ -116,8 +116,8 @@ double sum_of_forces(const Chain& chain) {
 }
 
 AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
-                                 Transition transition)
-    : problem_(problem), chain_(std::move(chain)) {
+                                 Transition transition, double least_share)
+    : problem_(problem), chain_(std::move(chain)), least_share_(least_share) {
   if (problem.spaces().order == 1)
     for (std::size_t node = 0; node <= chain_.size(); ++node) move_at_node(node, clearance, transition);
   carry_deficits();
@@ -185,11 +185,12 @@ void AdmissibleChain::carry(std::size_t from, std::size_t to) {
     move(from, -lack);
 }
 
-/// A linear pressure is nowhere negative if neither end has less than a third of the force.
+/// No end is left with less than its least share of the force.
 void AdmissibleChain::spread(Link& link) const {
   const double force = std::max(0., link.force());
-  const double at_begin =
-      problem_.spaces().order == 0 ? force / 2 : std::clamp(link.forces[0], force / 3, 2 * force / 3);
+  const double at_begin = problem_.spaces().order == 0
+                              ? force / 2
+                              : std::clamp(link.forces[0], least_share_ * force, (1 - least_share_) * force);
   link.forces = {at_begin, force - at_begin};
 }
 
@@ -224,6 +225,8 @@ bool AdmissibleChain::balance(const Chain& given, double rounding) {
     const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);
     pushes = pushes && (link.force() == 0 || (begin >= 0 && end >= 0));
     link.forces = scaled(link, begin, end);
+    pushes = pushes && (problem_.spaces().order == 0 ||
+                        std::min(link.forces[0], link.forces[1]) >= (1 - 1e-9) * least_share_ * link.force());
   }
   return pushes;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "fem/discretization.hpp"
 
 namespace signorini {
@@ -17,6 +19,8 @@ struct Link {
   std::array<double, 2> pressure() const {
     return {(4 * forces[0] - 2 * forces[1]) / length, (4 * forces[1] - 2 * forces[0]) / length};
   }
+  /// That one is negative at an end, by more than rounding.
+  bool is_steep() const { return std::min(forces[0], forces[1]) < (1 - 1e-9) / 3 * force(); }
 };
 
 /// Consecutive contact edges of one part.
@@ -36,8 +40,11 @@ class AdmissibleChain {
   /// the closed end, or none.
   enum class Transition { loaded, free };
 
+  /// What each end of an edge must have of its force: for a linear pressure ≥ 0, and for one that is steep.
+  static constexpr double kLinear = 1. / 3, kSteep = 1. / 20;
+
   AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
-                  Transition transition);
+                  Transition transition, double least_share);
 
   const Chain& links() const { return chain_; }
 
@@ -66,6 +73,7 @@ class AdmissibleChain {
 
   const Discretization& problem_;
   Chain chain_;
+  double least_share_;
   double force_of_support_ = 0;
 };
 

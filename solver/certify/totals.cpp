@@ -18,7 +18,10 @@ constexpr double kTolerance = 1e-10;
 class ContactTerms {
  public:
   ContactTerms(const Discretization& problem, const AdmissibleDisplacement& v, int i, CellBudget& budget)
-      : edge_(i), contact_(problem.clearance.edges[i]), length_(problem.mesh.length(contact_.edge)) {
+      : problem_(problem),
+        edge_(i),
+        contact_(problem.clearance.edges[i]),
+        length_(problem.mesh.length(contact_.edge)) {
     const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
                         std::abs(v.along_contact(contact_, 1));
     pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge),
@@ -28,18 +31,21 @@ class ContactTerms {
   }
 
   double operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
-    const auto& [first, second] = pressure.at_ends[edge_];
+    const EdgePressure own = pressure.on(problem_, edge_);
     double sum = 0;
-    for (const EdgePiece& piece : pieces_)
-      for (int q = 0; q < EdgeRule::size; ++q) {
-        const double s = piece.begin + piece.length() * edge_rule().points[q];
+    for (const EdgePiece& piece : pieces_) {
+      const double begin = std::max(piece.begin, own.begin), length = std::min(piece.end, own.end) - begin;
+      for (int q = 0; length > 0 && q < EdgeRule::size; ++q) {
+        const double s = begin + length * edge_rule().points[q];
         const double room = piece(s) + piece.remainder - v.along_contact(contact_, s);
-        sum += piece.length() * edge_rule().weights[q] * ((1 - s) * first + s * second) * room;
+        sum += length * edge_rule().weights[q] * own(s) * room;
       }
+    }
     return 2 * std::max(0., sum) * length_;
   }
 
  private:
+  const Discretization& problem_;
   const int edge_;
   const ContactEdge& contact_;
   const double length_;
@@ -60,7 +66,7 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
-    const double o = oscillation<D>(problem, t, laws, progress);
+    const double o = oscillation<D>(problem, t, pair.pressure, laws, progress);
     all += own;
     all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;

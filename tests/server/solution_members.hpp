@@ -27,18 +27,14 @@ auto members(T& all) {
   auto& [a, b] = all;
   return std::tie(a, b);
 }
-template <Some<EdgePressure> T>
-auto members(T& all) {
-  auto& [a, b] = all;
-  return std::tie(a, b);
-}
 template <typename T>
 requires Some<T, ContactSummary> || Some<T, Reaction>
 auto members(T& all) {
   auto& [a, b, c] = all;
   return std::tie(a, b, c);
 }
-template <Some<Unknowns> T>
+template <typename T>
+requires Some<T, Unknowns> || Some<T, EdgePressure>
 auto members(T& all) {
   auto& [a, b, c, d] = all;
   return std::tie(a, b, c, d);

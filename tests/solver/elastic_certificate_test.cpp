@@ -133,13 +133,16 @@ TEST_P(ContactEnds, AreBoundedCloseToTheError) {
   }
 }
 
-/// On 32 × 32 squares a load that jumps along a line that no mesh has.
+/// On 32 × 32 squares a load that jumps along a line that no mesh has, or along a circle.
 TEST_P(ContactEnds, WithAJumpThroughTheBodyAreBoundedCloseToTheError) {
   const auto& [scheme, poisson] = GetParam();
+  const bool along_a_circle = poisson == 0.3;
   Problem problem;
   problem.mesh.fineness = Divisions{32, 32};
   problem.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
-  problem.body = VectorField(Field(0), problems::formula("x + 0.7*y < 0.61 ? -1 : 0.5"));
+  problem.body = VectorField(
+      Field(0), problems::formula(along_a_circle ? "(x - 0.45)^2 + (y - 0.55)^2 < 0.083 ? -1 : 0.5"
+                                                 : "x + 0.7*y < 0.61 ? -1 : 0.5"));
   problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{0.02}}};
   problem.scheme = Scheme::conforming;
   problem.mesh.refine = 1;
@@ -309,6 +312,67 @@ TEST(Certificate, CarriesALackThatIsAMoment) {
     EXPECT_TRUE(coarse.guaranteed && fine.guaranteed);
     EXPECT_LE(coarse.energy_lower, fine.energy_upper) << gap;
     EXPECT_GE(coarse.energy_upper, fine.energy_lower) << gap;
+  }
+}
+
+/// A block that is pulled down at its right side and touches with its last edge: the linear pressure with the
+/// force and the moment of σ_h is negative at that edge's other end. Carried to the fixed side, that moment
+/// cost twenty times the rest of the bound.
+TEST(Certificate, OfASingleEdgeThatTouchesIsWorthIt) {
+  for (const int n : {5, 6, 7}) {
+    Problem problem = problems::block(Scheme::conforming, Pattern::right, 1, 0.25);
+    problem.domain = Rectangle{};
+    problem.mesh = MeshRequest(Divisions{n, n});
+    problem.boundary = {{"top", Fixed{}},
+                        {"right", Traction{VectorField(0, -0.1)}},
+                        {"bottom", Contact{0.06, Vector(0, -1)}}};
+    const Solution coarse = solved(problem);
+    const ErrorBound bound = *coarse.summary.error_bound;
+    problem.mesh.refine = 2;
+    const Solution fine = solved(problem);
+    const double energy = energy_by(*fine.summary.error_bound);
+    EXPECT_TRUE(bound.guaranteed);
+    EXPECT_LE(bound.energy_lower, energy);
+    EXPECT_GE(bound.energy_upper, energy);
+    EXPECT_LE(bound.relative, 1) << n;
+    const double left = left_side(distance(problem, coarse, fine, 2), coarse, fine, energy);
+    EXPECT_GE(bound.value, left) << n;
+    EXPECT_LE(bound.value, 2.5 * left) << n;
+  }
+}
+
+/// p* where it is steep: not negative, with the force and the moment of p_h.
+TEST(ContactPressure, IsSteepOnASingleEdgeThatTouches) {
+  Problem problem = problems::block(Scheme::conforming, Pattern::right, 1, 0.25);
+  problem.domain = Rectangle{};
+  problem.mesh = MeshRequest(Divisions{6, 6});
+  problem.boundary = {
+      {"top", Fixed{}}, {"right", Traction{VectorField(0, -0.1)}}, {"bottom", Contact{0.06, Vector(0, -1)}}};
+  for (const bool mirrored : {false, true}) {
+    if (mirrored)
+      problem.boundary = {{"top", Fixed{}},
+                          {"left", Traction{VectorField(0, -0.1)}},
+                          {"bottom", Contact{0.06, Vector(0, -1)}}};
+    const Solution solution = solved(problem);
+    double force = 0, moment = 0;
+    ASSERT_FALSE(solution.admissible_pressure.empty());
+    for (const EdgePressure& own : solution.admissible_pressure) {
+      EXPECT_GE(std::min(own.at_ends[0], own.at_ends[1]), 0);
+      const auto& [a, b] = solution.mesh.edges[own.edge];
+      constexpr int parts = 100'000;
+      for (int i = 0; i < parts; ++i) {
+        const double s = (i + 0.5) / parts, share = own(s) * solution.mesh.length(own.edge) / parts;
+        force += share;
+        moment += share * ((1 - s) * solution.mesh.points[a].x() + s * solution.mesh.points[b].x());
+      }
+    }
+    const Reaction& reaction = solution.summary.parts.front().part == "bottom"
+                                   ? solution.summary.parts.front()
+                                   : *std::ranges::find(solution.summary.parts, "bottom", &Reaction::part);
+    EXPECT_NEAR(force, reaction.force[1], 1e-8 * force);
+    EXPECT_NEAR(moment, reaction.moment, 1e-8 * force);
+    EXPECT_TRUE(std::ranges::any_of(solution.admissible_pressure,
+                                    [](const EdgePressure& own) { return own.end - own.begin < 0.99; }));
   }
 }
 
