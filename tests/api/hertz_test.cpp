@@ -7,6 +7,7 @@
 
 #include "api/examples.hpp"
 #include "api/problem_json.hpp"
+#include "problems/sanitized.hpp"
 #include "solve.hpp"
 
 namespace signorini::api {
@@ -47,7 +48,7 @@ double hertz_peak(double force) {
 TEST(Hertz, ThePeakOfAnArcIsThatOfHertzOnCoarseMeshesToo) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
     for (const Vector& direction : {Vector(0, -1), Vector(0, 0)})
-      for (const double edge : {0.02, 0.01, 0.005}) {
+      for (const double edge : sanitized ? std::vector{0.02} : std::vector{0.02, 0.01, 0.005}) {
         Request request = half_disc();
         request.problem.scheme = scheme;
         request.problem.mesh.sizes[0].size = edge;
@@ -81,7 +82,7 @@ TEST(Hertz, ThePressureTendsToHertzAsTheOverlapFalls) {
   constexpr double edge = kEdge / 2;
   Request request = half_disc();
   request.problem.mesh.sizes[0].size = edge;
-  for (const double delta : {0.02, 0.01, 0.005}) {
+  for (const double delta : sanitized ? std::vector{0.005} : std::vector{0.02, 0.01, 0.005}) {
     std::get<Contact>(request.problem.boundary.at("contact")).gap =
         Field([=](const Point& x, const Vector&) { return x.y() - delta; }, "/test");
     const Solution solution = solve(request.problem, request.settings);

@@ -7,6 +7,7 @@
 
 #include "mesh/domain_mesh.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini {
 namespace {
@@ -28,7 +29,7 @@ double integral(const LoadProjection& loads, const Mesh& mesh) {
 /// all of it.
 TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
   const double exact = 10 * (2 * std::numbers::pi * 0.288 * 0.288 - 1);
-  for (const int n : {2, 8, 32, 64}) {
+  for (const int n : sanitized ? std::vector{2, 8} : std::vector{2, 8, 32, 64}) {
     Problem problem = problems::paper(Scheme::conforming, n);
     problem.body = problems::formula("(x - 0.45)^2 + (y - 0.55)^2 < 0.288^2 ? 10 : -10");
     const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);

@@ -225,6 +225,7 @@ TEST(Units, ChangeNeitherCountsNorTheActiveSet) {
     for (const double a : {1e-9, 1., 1e9})
       for (const double b : {1e-9, 1., 1e9})
         for (const double c : {1e-9, 1., 1e9}) {
+          if (sanitized && (a == 1 || b == 1 || c == 1)) continue;
           const Solution solution = solve(scaled(a, b, c), {method, {}});
           EXPECT_EQ(solution.summary.outcome, Outcome::converged);
           EXPECT_EQ(solution.summary.iterations, reference.summary.iterations) << a << ' ' << b << ' ' << c;
