@@ -7,7 +7,7 @@
 
 #include "api/examples.hpp"
 #include "api/problem_json.hpp"
-#include "problems/sanitized.hpp"
+#include "../problems/sanitized.hpp"
 #include "solve.hpp"
 
 namespace signorini::api {
