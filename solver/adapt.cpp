@@ -157,12 +157,12 @@ Eigen::VectorXd foreseen(const Eigen::VectorXd& shares, const std::vector<int>& 
 std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, double growth, std::size_t most,
                                        Progress& progress) {
   constexpr double fall = 0.3;
-  const double bulk =
-      growth < kGrowth ? 0.05 : 0.2;  // the last level is not to be larger than it needs to be
   Mesh mesh = solution.mesh;
   Eigen::VectorXd shares = solution.error_squares;
   const double enough = growth * static_cast<double>(mesh.triangles.size()), little = fall * shares.sum();
   for (bool first = true;; first = false) {
+    // Not to overshoot by a step what the tolerance needs.
+    const double bulk = 1.3 * static_cast<double>(mesh.triangles.size()) > enough ? 0.05 : 0.2;
     std::vector<int> parents;
     Mesh finer = bisect(mesh, mark(shares, bulk), parents, &progress);
     if (!first && finer.triangles.size() > most) break;

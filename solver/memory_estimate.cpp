@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/law_pieces.hpp"
+#include "certify/star_relaxation.hpp"
 #include "fem/load_projection.hpp"
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
@@ -126,11 +127,20 @@ double element_sum(const Spaces& spaces, bool shares) {
   return kGrowth * (kIndex * (own + 1) + sizeof(Point) + (shares ? 0 : kNumber * own * own));
 }
 
+/// What a triangle takes while the pair of an elastic body is relaxed: its form where it shares it with no
+/// other, the slope, its unknowns, and the triangles at half a point.
+double relaxation(bool shares) {
+  constexpr double at_point = 100, unknowns = 4;
+  return kIndex + sizeof(TriangleForms::Vector) + unknowns * (2 * kNumber + kIndex) + at_point / 2 +
+         (shares ? 0 : sizeof(TriangleForms::Matrix));
+}
+
 /// What a triangle takes while the error is bounded: the admissible pair and its shares, and the law if it
 /// varies.
-double certificate(const Problem& problem) {
+double certificate(const Problem& problem, const Spaces& spaces, bool shares) {
   constexpr double pair = 170, of_cut = 64;
-  return pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut);
+  return pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut) +
+         (spaces.components == 2 ? relaxation(shares) : 0);
 }
 
 /// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
@@ -163,9 +173,10 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double factoring = made.stacks + complement + right + sizes.triangles * element_sum(spaces, shares);
   // The fields as they were found, the solution, and what is made on the way to it.
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
-  const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
-                            sizes.triangles * (kNumber * spaces.stresses() + certificate(problem)) +
-                            tables(problem, spaces);
+  const double certifying =
+      2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
+      sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces, shares)) +
+      tables(problem, spaces);
   // A mesh that refines itself keeps the solution of the level before.
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) : 0;
   return kSlack * (kept + std::max(factoring, certifying) + before);

@@ -7,6 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "certify/displacement_relaxation.hpp"
 #include "certify/gap_bubble.hpp"
 #include "certify/potential.hpp"
 #include "certify/relaxation.hpp"
@@ -127,6 +128,36 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
     }
   for (const ContactEdge& contact : problem_.clearance.edges)
     if (!values.held_middles[contact.edge]) lower_below(contact);
+}
+
+void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
+  const Mesh& mesh = problem_.mesh;
+  const std::size_t points = mesh.points.size();
+  std::vector<NodeFreedom> freedom(points + mesh.edges.size());
+  for (const auto& [point, value] : fixed_points_) freedom[point].held = true;
+  for (const BoundaryPart& part : mesh.boundary) {
+    const bool rolls = condition_on<Roller>(problem_.problem, part.name);
+    for (const int edge : part.edges) {
+      if (condition_on<Fixed>(problem_.problem, part.name)) freedom[points + edge].held = true;
+      if (!rolls) continue;
+      const Vector n = mesh.outward_normal(edge);
+      for (const std::size_t node :
+           {std::size_t(mesh.edges[edge][0]), std::size_t(mesh.edges[edge][1]), points + edge})
+        freedom[node].hold_along(n, mesh.rounding_of_normal(edge));
+    }
+  }
+  for (const ContactEdge& contact : problem_.clearance.edges) {
+    const double rounding = mesh.rounding_of_normal(contact.edge);
+    for (const int point : mesh.edges[contact.edge]) freedom[point].hold_along(contact.direction, rounding);
+    freedom[points + contact.edge].hold_along(contact.direction, rounding);
+  }
+  relax_displacement(problem_, freedom, sweeps, points_, middles_, progress);
+  for (const ContactEdge& contact : problem_.clearance.edges)
+    if (!touches(contact)) lower_below(contact);
+}
+
+bool AdmissibleDisplacement::touches(const ContactEdge& contact) const {
+  return clearance_[contact.rows[0]] <= 0 && clearance_[contact.rows[1]] <= 0;
 }
 
 const Lift* AdmissibleDisplacement::lift(int edge) const {
@@ -404,11 +435,10 @@ void AdmissibleDisplacement::meet(const ContactEdge& contact) {
   for (const int k : {0, 1})
     if (room(contact, k) < -kNearly * scale_) return refuse_point(k == 0 ? a : b);
   const Eigen::VectorXd n = direction(contact);
-  const auto touches = [&](int point, int k) {
+  const auto touches_in = [&](int point, int k) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kSmall * scale_;
   };
-  const bool closed = clearance_[contact.rows[0]] <= 0 && clearance_[contact.rows[1]] <= 0;
-  if (closed && touches(a, 0) && touches(b, 1))
+  if (touches(contact) && touches_in(a, 0) && touches_in(b, 1))
     close(contact);
   else
     lower_below(contact);

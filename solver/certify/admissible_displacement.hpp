@@ -37,6 +37,9 @@ class AdmissibleDisplacement {
   /// What is lifted stays as it is, and so do the values that touch.
   void relax(const Eigen::VectorXd& work, int steps, Progress& progress);
 
+  /// The same for an elastic body, in so many sweeps: see displacement_relaxation.hpp.
+  void relax_on_stars(int sweeps, Progress& progress);
+
   template <int D>
   Quadratic<D> on(int t) const {
     Quadratic<D> values;
@@ -85,6 +88,8 @@ class AdmissibleDisplacement {
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);
   void follow_traces(std::map<int, std::vector<PointConstraint>> constraints);
+  /// The clearance is 0 at both ends.
+  bool touches(const ContactEdge& contact) const;
   bool exceeds_gap(const ContactEdge& contact) const;
   void fix(const BoundaryPart& part, const Fixed& condition);
   void add_rest(int edge, const EdgeLine& line, const Field& field);

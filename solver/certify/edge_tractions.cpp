@@ -25,14 +25,6 @@ Eigen::Matrix3Xd asymmetry(const Discretization& problem, const Eigen::MatrixXd&
   return moments;
 }
 
-/// The triangles at every point.
-std::vector<std::vector<int>> triangles_at_points(const Mesh& mesh) {
-  std::vector<std::vector<int>> at(mesh.points.size());
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
-    for (const int point : mesh.triangles[t]) at[point].push_back(t);
-  return at;
-}
-
 int corner_number(const Mesh& mesh, int t, int point) {
   const auto& corners = mesh.triangles[t];
   return corners[0] == point ? 0 : (corners[1] == point ? 1 : 2);
@@ -68,8 +60,7 @@ Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
   const int edge = problem_.mesh.triangle_edges[t][e];
   Eigen::Matrix2d ends = tractions_[edge];
   if (problem_.mesh.edge_triangles[edge][0] != t) ends = -ends.rowwise().reverse().eval();
-  Eigen::Matrix<double, 2, 3> all;
-  all << ends, ends.rowwise().mean();
+  Eigen::Matrix<double, 2, 3> all = linear_along_edge(ends);
   if (!given_.acts_on(edge)) return all;
   for (int c = 0; c < 2; ++c) {
     // What t has beyond its linear part is the same from either end.
@@ -172,6 +163,23 @@ Eigen::Matrix2d EdgeTractions::of_airy(const ContactPressure::Airy& a, const Con
   ends << (6 * rise - 4 * slope_a - 2 * slope_b) / length * n + along,
       (-6 * rise + 2 * slope_a + 4 * slope_b) / length * n + along;
   return ends;
+}
+
+Eigen::Matrix2d EdgeTractions::of_turn(const Vector& way) {
+  return way / way.squaredNorm() * Eigen::RowVector2d(1, -1);
+}
+
+void EdgeTractions::add(const Eigen::Matrix3Xd& airy, const Eigen::VectorXd& turns) {
+  const Mesh& mesh = problem_.mesh;
+  const auto at_point = [&](int point) {
+    return ContactPressure::Airy{airy(0, point), airy.col(point).tail<2>()};
+  };
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    const auto [from, to] = domain_on_the_left(mesh, edge);
+    const Vector way = mesh.points[to] - mesh.points[from];
+    at(edge) +=
+        of_airy(at_point(from), at_point(to), way) + (from < to ? 1 : -1) * turns[edge] * of_turn(way);
+  }
 }
 
 /// On Γ_C the traction changes by −(p* − p_h) d, and by what lacks.

@@ -9,6 +9,11 @@
 
 namespace signorini {
 
+/// A linear traction at both ends and in the middle of an edge, by that at its ends.
+inline Eigen::Matrix<double, 2, 3> linear_along_edge(const Eigen::Matrix2d& ends) {
+  return (Eigen::Matrix<double, 2, 3>() << ends, ends.rowwise().mean()).finished();
+}
+
 /// Tractions on all edges of an elastic body, linear on each edge and quadratic on Γ_F, that hold every
 /// triangle in equilibrium of forces and of moments under the discrete load, so that a symmetric stress with
 /// these tractions exists.
@@ -37,6 +42,13 @@ class EdgeTractions {
   /// domain on its left.
   static Eigen::Matrix2d of_airy(const ContactPressure::Airy& a, const ContactPressure::Airy& b,
                                  const Vector& way);
+  /// The same of one that is 0 on the edge with −∂_n ψ = s (1 − s), s ∈ [0, 1] along the way.
+  static Eigen::Matrix2d of_turn(const Vector& way);
+
+  /// Adds the tractions of an Airy function: (ψ, ∇ψ) of each point by columns, and what −∂_n ψ is of s (1 −
+  /// s) on each edge, seen from where the way to the point of the larger number has the domain on its left.
+  /// On Γ_C and Γ_F it must vanish.
+  void add(const Eigen::Matrix3Xd& airy, const Eigen::VectorXd& turns);
 
  private:
   Eigen::Matrix2d& at(int edge) { return tractions_[edge]; }

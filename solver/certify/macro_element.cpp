@@ -61,8 +61,8 @@ Eigen::Matrix<double, 3, MacroElement::kBubbles> bubbles(const Point& x) {
   for (int e = 0; e < 3; ++e) {
     const int i = (e + 1) % 3, j = (e + 2) % 3;
     const Vector t = corner(j) - corner(i);
-    for (int m = 0; m < 3; ++m)
-      values.col(3 * e + m) =
+    for (const auto& [k, m] : {std::pair(0, i), {1, j}})
+      values.col(2 * e + k) =
           lambda[i] * lambda[j] * lambda[m] * Eigen::Vector3d(t.x() * t.x(), t.y() * t.y(), t.x() * t.y());
   }
   return values;
@@ -75,8 +75,8 @@ Eigen::Matrix<double, 2, MacroElement::kBubbles> divergences_of_bubbles(const Po
   for (int e = 0; e < 3; ++e) {
     const int i = (e + 1) % 3, j = (e + 2) % 3;
     const Vector t = corner(j) - corner(i);
-    for (int m = 0; m < 3; ++m)
-      values.col(3 * e + m) =
+    for (const auto& [k, m] : {std::pair(0, i), {1, j}})
+      values.col(2 * e + k) =
           t * t.dot(lambda[j] * lambda[m] * slopes.col(i) + lambda[i] * lambda[m] * slopes.col(j) +
                     lambda[i] * lambda[j] * slopes.col(m));
   }

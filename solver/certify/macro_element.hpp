@@ -14,18 +14,19 @@ namespace signorini {
 /// On it live symmetric stresses that are quadratic on each part, with continuous traction: the element of
 /// Johnson and Mercier (1978) in its quadratic form (Gong, Gopalakrishnan, Guzmán, Neilan 2023). To these
 /// come the cubic bubbles λ_i λ_j λ_m t tᵀ, with t along the edge between corners i and j, which have no
-/// traction on the boundary and whose divergences are all quadratic loads without force and moment (Hu, Zhang
-/// 2015). Such a stress is determined by its traction on the three edges and its divergence up to six
+/// traction on the boundary and whose divergences, with those of the quadratic ones, are all quadratic loads
+/// without force and moment (Hu, Zhang 2015); m is i or j, for with the third the three add up to a quadratic
+/// one. Such a stress is determined by its traction on the three edges and its divergence up to three
 /// stresses that have neither. Displacements on it are quadratic on each part and continuous (the pair of
 /// Scott and Vogelius, which is stable here): ten nodes, the corners, the middles of the edges, the centroid,
 /// and the middles between corner i and the centroid.
 struct MacroElement {
   static constexpr int kPieces = 54;  ///< per part, per node of P2, (xx, yy, xy)
-  static constexpr int kBubbles = 9;  ///< per edge, m = 0, 1, 2
+  static constexpr int kBubbles = 6;  ///< per edge, m = i, j
   static constexpr int kStresses = kPieces + kBubbles;
   /// Traction at both ends and in the middle of edge 0, 1, 2; divergence at the nodes of P2.
   static constexpr int kTractions = 18, kData = kTractions + 12;
-  static constexpr int kFree = 6;
+  static constexpr int kFree = 3;
   static constexpr int kNodes = 10;
 
   using FromData = Eigen::Matrix<double, kStresses, kData>;

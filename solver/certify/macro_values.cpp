@@ -14,15 +14,6 @@ namespace {
 constexpr int kInner = MacroRule::kInner;
 constexpr double kHalf = std::numbers::sqrt2 / 2;  ///< √½
 
-/// Mandel's tensor of J τ̂ Jᵀ / det J for τ̂ = (xx, yy, xy).
-Eigen::Matrix3d piola(const AffineMap& map) {
-  const double a = map.jacobian(0, 0), b = map.jacobian(0, 1), c = map.jacobian(1, 0), d = map.jacobian(1, 1);
-  Eigen::Matrix3d transform;
-  transform << a * a, b * b, 2 * a * b, c * c, d * d, 2 * c * d, a * c, b * d, a * d + b * c;
-  transform.row(2) *= std::numbers::sqrt2;
-  return transform / map.determinant;
-}
-
 /// Mandel's strain of v = Σ φ_i v_i from the gradients of the φ_i, the components of v in turns.
 template <int Nodes>
 Eigen::Matrix<double, 3, 2 * Nodes> strains(const Eigen::Matrix<double, 2, Nodes>& gradients) {
@@ -49,6 +40,14 @@ const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d piola(const AffineMap& map) {
+  const double a = map.jacobian(0, 0), b = map.jacobian(0, 1), c = map.jacobian(1, 0), d = map.jacobian(1, 1);
+  Eigen::Matrix3d transform;
+  transform << a * a, b * b, 2 * a * b, c * c, d * d, 2 * c * d, a * c, b * d, a * d + b * c;
+  transform.row(2) *= std::numbers::sqrt2;
+  return transform / map.determinant;
+}
 
 MacroRule::MacroRule(const Spaces& spaces, int degree)
     : places(MacroElement::places(rule_of_degree(degree))) {

@@ -47,6 +47,9 @@ const MacroRule& macro_rule(const Spaces& spaces, int degree);
 /// (xx, yy, √2 xy) of the symmetric part.
 Eigen::Vector3d mandel(const Tensor<2>& tensor);
 
+/// Mandel's tensor of J τ̂ Jᵀ / det J for τ̂ = (xx, yy, xy).
+Eigen::Matrix3d piola(const AffineMap& map);
+
 /// C on the symmetric tensors (xx, yy, √2 xy) of Mandel, by its factor C = L Lᵀ, and on skew ones.
 struct SymmetricLaw {
   explicit SymmetricLaw(const Eigen::Matrix4d& compliance);

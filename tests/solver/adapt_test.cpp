@@ -255,8 +255,8 @@ TEST(Adapt, LowersTheBoundWhereAHoleTouches) {
 }
 
 TEST(Adapt, SolvesElasticBodiesToOneThousandth) {
-  for (const auto& [problem, most] : {std::pair(problems::pressed_angle(Scheme::conforming), 29000),
-                                      {problems::half_disc(Scheme::conforming), 49000}}) {
+  for (const auto& [problem, most] : {std::pair(problems::pressed_angle(Scheme::conforming), 20000),
+                                      {problems::half_disc(Scheme::conforming), 33000}}) {
     const double tolerance = sanitized ? 3e-2 : 1e-3;
     const Solution solution = solve(adaptive(problem, tolerance, most), by(ActiveSet{}));
     EXPECT_EQ(solution.summary.outcome, Outcome::converged) << solution.summary.advice;

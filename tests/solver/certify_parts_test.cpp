@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "certify/admissible_displacement.hpp"
 #include "certify/carried_loads.hpp"
 #include "certify/edge_tractions.hpp"
 #include "certify/least_airy.hpp"
@@ -13,61 +12,21 @@
 #include "certify/local_fields.hpp"
 #include "certify/macro_element.hpp"
 #include "certify/quadratic_balance.hpp"
+#include "certify/traction_relaxation.hpp"
 #include "fem/lagrange.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
 #include "requested_mesh.hpp"
-#include "solve.hpp"
+#include "solved_problem.hpp"
 
 namespace signorini {
 namespace {
 
-/// A solved problem with what its certificate is made from.
-struct Made {
-  Made(const Problem& posed, const Solution& solved)
-      : problem(posed), solution(solved), discretization(problem, solution.mesh) {
-    clearance.resize(discretization.clearance.rows.size());
-    Eigen::Index next = 0;
-    for (const ContactPart& part : solution.contact)
-      for (const double own : part.clearance) clearance[next++] = own;
-  }
-
-  /// By the clearance alone, as if all other traces were 0.
-  AdmissibleDisplacement displacement() const {
-    Eigen::VectorXd coupling = Eigen::VectorXd::Zero(discretization.traces.unknowns());
-    for (const ClearanceRow& row : discretization.clearance.rows)
-      if (row.unknown >= 0)
-        coupling[discretization.traces.free_unknowns() + row.unknown] =
-            clearance[&row - discretization.clearance.rows.data()];
-    return {discretization, solution, coupling};
-  }
-
-  Problem problem;
-  Solution solution;
-  Discretization discretization;
-  Eigen::VectorXd clearance;
-  Observer observer;
-  mutable Progress progress{observer, std::nullopt};
-};
-
-/// A block pressed by a punch, bent besides, on a foundation that it leaves at one side. Its loads have
-/// couples on triangles and edges.
-Problem punch(Scheme scheme) {
-  Problem problem;
-  problem.mesh = {Divisions{8, 6}, Pattern::crossed};
-  problem.scheme = scheme;
-  problem.material = YoungPoisson{Field(2), Field(0.35), Plane::strain};
-  problem.boundary = {{"top", Fixed{VectorField(0.02, -0.05)}},
-                      {"bottom", Contact{problems::formula("0.2 * (x - 0.3)^2")}},
-                      {"left", Traction{VectorField(problems::formula("0.03 + 0.1 * y^2"), Field(-0.02))}}};
-  problem.body = VectorField(problems::formula("0.1 + y"), problems::formula("-0.2 - x * y"));
-  return problem;
-}
-
 class Parts : public testing::TestWithParam<Scheme> {};
 
 /// On Γ_C the traction is −p* d with p* ≥ 0.
-void expect_pressure(const Made& made, const EdgeTractions& tractions, const ContactPressure& pressure) {
+void expect_pressure(const SolvedProblem& made, const EdgeTractions& tractions,
+                     const ContactPressure& pressure) {
   const Mesh& mesh = made.solution.mesh;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
     const ContactEdge& contact = made.discretization.clearance.edges[i];
@@ -83,8 +42,8 @@ void expect_pressure(const Made& made, const EdgeTractions& tractions, const Con
 }
 
 /// Every triangle is in balance of forces and of moments, and has the traction given on Γ_F.
-void expect_balance(const Made& made, const ContactPressure& pressure) {
-  const EdgeTractions tractions(made.discretization, made.solution.stress, pressure);
+void expect_balance(const SolvedProblem& made, const ContactPressure& pressure,
+                    const EdgeTractions& tractions) {
   EXPECT_TRUE(tractions.unmet().empty());
   expect_pressure(made, tractions, pressure);
   const Mesh& mesh = made.solution.mesh;
@@ -124,9 +83,17 @@ void expect_balance(const Made& made, const ContactPressure& pressure) {
   }
 }
 
+/// The same before and after the tractions are relaxed.
+void expect_balance(const SolvedProblem& made, const ContactPressure& pressure) {
+  EdgeTractions tractions(made.discretization, made.solution.stress, pressure);
+  expect_balance(made, pressure, tractions);
+  relax_tractions(made.discretization, made.solution.stress, tractions, 2, made.progress);
+  expect_balance(made, pressure, tractions);
+}
+
 TEST_P(Parts, EveryTriangleIsInBalanceOfForcesAndMoments) {
   const Problem problem = punch(GetParam());
-  const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+  const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
   ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
   EXPECT_TRUE(pressure.lacks.empty());
   expect_balance(made, pressure);
@@ -145,7 +112,7 @@ TEST(Parts, OfContactThatBendsAreInBalance) {
           Polygon{{{0, 0}, {1, -0.1}, {2, 0}, {2, 1}, {0, 1}}, {}, {"arc", "arc", "side", "top", "side"}};
       problem.boundary["arc"] = Contact{problems::formula("0.015 * x")};
     }
-    const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+    const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
     ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
     EXPECT_TRUE(pressure.lacks.empty());
     const auto largest = [](const auto& ends) {
@@ -164,7 +131,7 @@ TEST(Parts, OfContactThatBendsAreInBalance) {
 }
 
 /// p* is nowhere negative, and has force and moment of p_h.
-void expect_admissible(const Made& made, const ContactPressure& pressure) {
+void expect_admissible(const SolvedProblem& made, const ContactPressure& pressure) {
   double force = 0, change = 0, moment_of_change = 0;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
     const int edge = made.discretization.clearance.edges[i].edge;
@@ -185,7 +152,7 @@ void expect_admissible(const Made& made, const ContactPressure& pressure) {
 
 TEST_P(Parts, ThePressureIsNowhereNegativeAndHasTheForceOfTheDiscreteOne) {
   const Problem problem = punch(GetParam());
-  const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+  const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
   ContactPressure pressure(made.discretization, made.solution.stress, made.clearance);
   expect_admissible(made, pressure);
   if (GetParam() == Scheme::nonconforming) return;
@@ -211,7 +178,7 @@ TEST(AdmissibleDisplacement, MeetsEveryConditionAtEveryPoint) {
   problem.boundary["right"] = Fixed{VectorField(1)};
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     problem.scheme = scheme;
-    const Made made(problem, solve(problem, {ActiveSet{}, {}}));
+    const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
     const AdmissibleDisplacement v = made.displacement();
     EXPECT_TRUE(v.unmet().empty());
     for (const BoundaryPart& part : made.solution.mesh.boundary)
