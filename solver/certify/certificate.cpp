@@ -88,10 +88,12 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   AdmissiblePair pair{{problem, solution, coupling}, {problem, solution.stress, clearance}};
   Certificate certificate;
   std::vector<std::string> unmet = pair.v.unmet();
-  // Rounding leaves less; an iteration that its tolerance ended before leaves more.
+  // Rounding leaves less, but where 1 − 2ν or the inverse of a contrast is no more than that.
   constexpr double equilibrium = 1e-9;
   if (solution.summary.residuals.equilibrium > equilibrium)
-    unmet.push_back("the stress is not in equilibrium: the iteration ended before it was");
+    unmet.push_back(
+        "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly incompressible "
+        "or of so different stiffnesses: take Poisson's ratio further from 1/2, or a smaller contrast");
   const double tolerance = kOfGap * std::min(1., estimate_gap(problem, solution.stress, pair.v, progress));
   const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
   for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet()})

@@ -77,9 +77,8 @@ LocalFields Elimination::recover(
   return fields;
 }
 
-LocalFields Elimination::respond(const LocalVector& coupling_change) const {
-  LocalFields fields =
-      solve(coupling_.transpose() * coupling_change, LocalVector::Zero(spaces_.displacements()));
+LocalFields Elimination::respond(const LocalVector& coupling_change, const LocalVector& lack) const {
+  LocalFields fields = solve(coupling_.transpose() * coupling_change, lack);
   fields.force = force(fields.stress);
   return fields;
 }

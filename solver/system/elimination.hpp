@@ -33,8 +33,8 @@ class Elimination {
   /// The fields for given coupling and load F; `strain` answers M σ with as many digits as it can.
   LocalFields recover(const LocalVector& coupling, const LocalVector& load,
                       const std::function<LocalVector(const LocalVector& stress)>& strain) const;
-  /// What the fields change by if the coupling does.
-  LocalFields respond(const LocalVector& coupling_change) const;
+  /// What the fields change by if the coupling does and div σ takes up what it lacks, −F − B σ.
+  LocalFields respond(const LocalVector& coupling_change, const LocalVector& lack) const;
   LocalVector force(const LocalVector& stress) const { return coupling_ * stress; }  ///< G σ
   const LocalMatrix& compliance() const { return compliance_matrix_; }               ///< M
 

@@ -58,7 +58,8 @@ void change(const Discretization& problem, const Eigen::VectorXd& dx, Recovered&
     progress.check_in(t);
     const Elimination& elimination = eliminations(
         t, [&](const ElementMatrices& matrices) { return Elimination(matrices, problem.spaces()); });
-    const LocalFields local = elimination.respond(problem.traces.changes(t, dx));
+    const LocalVector lack = -problem.load.col(t) - problem.spaces().divergence * fields.stress.col(t);
+    const LocalFields local = elimination.respond(problem.traces.changes(t, dx), lack);
     fields.stress.col(t) += local.stress;
     fields.displacement.col(t) += local.displacement;
     subtract_forces(problem.traces, t, elimination.force(fields.stress.col(t)), fields.imbalance);

@@ -162,6 +162,23 @@ INSTANTIATE_TEST_SUITE_P(Poisson, ContactEnds,
                          testing::Combine(testing::Values(Scheme::conforming, Scheme::nonconforming),
                                           testing::Values(0., 0.1, 0.3, 0.49, 0.4999)));
 
+/// Refinement of the traces brings their digits back; the stress that follows has to keep its balance.
+TEST(Equilibrium, IsKeptWhereTheLawIsExtreme) {
+  Problem problem = problems::block(Scheme::conforming, Pattern::right, 1, 0.49999999);
+  problem.domain = Rectangle{};
+  problem.mesh = MeshRequest(Divisions{16, 16});
+  problem.boundary = {
+      {"left", Fixed{}}, {"bottom", Contact{0.05}}, {"top", Traction{VectorField(0, -0.01)}}};
+  Problem of_contrast = problem;
+  of_contrast.mesh = MeshRequest(Divisions{4, 4});
+  of_contrast.material = YoungPoisson{problems::formula("x < 0.5 ? 1 : 1e9"), Field(0.3), Plane::strain};
+  for (const Problem& extreme : {problem, of_contrast}) {
+    const Summary summary = solved(extreme).summary;
+    EXPECT_LE(summary.residuals.equilibrium, 1e-10);
+    EXPECT_EQ(summary.error_bound.value().unmet, std::vector<std::string>());
+  }
+}
+
 /// What an open chain has for forces is rounding beside the stress.
 TEST(OpenContact, IsGuaranteed) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
