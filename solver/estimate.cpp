@@ -101,9 +101,13 @@ std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
 /// Of the mesh that the problem asks for. Small ones are made.
 Counts Estimation::count() {
   std::optional<Mesh> mesh;
-  if (!is_rectangle() && may_be_made_ > 0) mesh = make_small_mesh(problem_.domain, problem_.mesh);
-  if (mesh) may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
-  MeshSizes sizes = mesh ? sizes_of(*mesh) : predicted_(problem_.mesh);
+  MeshSizes sizes = predicted_(problem_.mesh);
+  if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= few_triangles)
+    mesh = make_small_mesh(problem_.domain, problem_.mesh);
+  if (mesh) {
+    may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+    sizes = sizes_of(*mesh);
+  }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {
     if (problem_.scheme == Scheme::nonconforming) contact *= 2;

@@ -17,6 +17,10 @@ inline Box box_around(const Segment& segment, double margin) {
   return {segment[0].cwiseMin(segment[1]).array() - margin, segment[0].cwiseMax(segment[1]).array() + margin};
 }
 
+inline Box wider(const Box& box, double margin) {
+  return {box.low.array() - margin, box.high.array() + margin};
+}
+
 inline Box box_around_both(const Box& one, const Box& other) {
   return {one.low.cwiseMin(other.low), one.high.cwiseMax(other.high)};
 }
@@ -52,10 +56,12 @@ void for_each_meeting_pair(const std::vector<Box>& boxes, Visit visit) {
   std::vector<int> by_begin(boxes.size());
   std::iota(by_begin.begin(), by_begin.end(), 0);
   std::ranges::sort(by_begin, {}, [&](int i) { return std::pair(boxes[i].low[along], i); });
-  for (std::size_t k = 0; k < by_begin.size(); ++k) {
-    const Box& box = boxes[by_begin[k]];
-    for (std::size_t l = k + 1; l < by_begin.size(); ++l) {
-      const Box& other = boxes[by_begin[l]];
+  std::vector<Box> sorted;  // for they are looked at one after the other
+  for (const int i : by_begin) sorted.push_back(boxes[i]);
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    const Box& box = sorted[k];
+    for (std::size_t l = k + 1; l < sorted.size(); ++l) {
+      const Box& other = sorted[l];
       if (other.low[along] > box.high[along]) break;
       const bool meet = other.low[across] <= box.high[across] && box.low[across] <= other.high[across];
       if (meet && !visit(by_begin[k], by_begin[l])) return;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mesh/domain_mesh.hpp"
+#include "mesh/meeting_boxes.hpp"
 #include "mesh/narrow_places.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/rectangle.hpp"
@@ -50,8 +51,11 @@ MeshSizes sizes_of(const MeshData& data) {
 /// The edges that one of the boundary is cut into.
 double pieces_of(const Segment& edge, double length, double size, const std::vector<LocalSize>& locals) {
   double pieces = length <= size ? 1 : kEdgesByLength * length / size;
+  const Box box = box_around(edge, 0);
   for (const LocalSize& local : locals) {
-    if (local.size >= std::min(size, length) || distance(local.at, edge) > local.radius) continue;
+    if (local.size >= std::min(size, length) || !is_within(local.at, wider(box, local.radius)) ||
+        distance(local.at, edge) > local.radius)
+      continue;
     const double within = std::min(length, 2 * local.radius + local.size);
     pieces += kEdgesByLength * (within / local.size + 2 * std::log2(size / local.size));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "mesh/meeting_boxes.hpp"
 #include "mesh/segments.hpp"
@@ -36,20 +37,40 @@ void for_each_near_pair(const Rings& unit, const Visit& visit) {
   for_each_meeting_pair(boxes, visit);
 }
 
+/// An edge as its distance is asked for.
+struct Edge {
+  explicit Edge(const Segment& ends)
+      : begin(ends[0]), way(ends[1] - ends[0]), length(way.norm()), inverse(1 / way.squaredNorm()) {}
+
+  /// The vector from the nearest point to x.
+  Vector to(const Point& x) const {
+    const Vector from_begin = x - begin;
+    return from_begin - std::clamp(from_begin.dot(way) * inverse, 0.0, 1.0) * way;
+  }
+
+  Point begin;
+  Vector way;
+  double length, inverse;
+};
+
 class Count {
  public:
-  Count(const Rings& unit, double enough) : rings_(unit), enough_(enough), near_(unit.points.size()) {
+  Count(const Rings& unit, double enough) : rings_(unit), enough_(enough) {
     for (int ring = 0; ring < unit.size(); ++ring)
       domain_on_the_left_.push_back((unit.signed_area(ring) > 0) == (ring == 0));
+    for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge)
+      edges_.emplace_back(segment_of(unit, edge));
   }
 
   NarrowPlaces run() {
     if (!find_pairs()) return {std::numeric_limits<double>::infinity(), last_pair_[0], last_pair_[1]};
     double most = 0;
-    for (int edge = 0; edge < static_cast<int>(near_.size()) && found_.triangles < enough_; ++edge) {
+    for (int edge = 0; edge < static_cast<int>(edges_.size()) && found_.triangles < enough_; ++edge) {
       const double before = found_.triangles;
-      closest_ = std::numeric_limits<double>::infinity();
-      add({edge, 0, 1}, near_[edge]);
+      closest_ = edges_[edge].length;
+      near_.assign(neighbours_.begin() + first_neighbour_[edge],
+                   neighbours_.begin() + first_neighbour_[edge + 1]);
+      add({edge, 0, 1}, 0);
       if (found_.triangles - before <= most) continue;
       most = found_.triangles - before;
       found_.edge = edge;
@@ -65,45 +86,55 @@ class Count {
     double begin, end;
   };
 
-  Segment segment(int edge) const { return segment_of(rings_, edge); }
-  double length(int edge) const { return length_of(segment(edge)); }
-
   /// The other edges closer to an edge than it is long.
   bool find_pairs() {
-    std::size_t pairs = 0;
+    std::vector<std::array<int, 2>> pairs;
+    first_neighbour_.assign(edges_.size() + 1, 0);
     for_each_near_pair(rings_, [&](int i, int j) {
-      near_[i].push_back(j);
-      near_[j].push_back(i);
+      pairs.push_back({i, j});
+      ++first_neighbour_[i], ++first_neighbour_[j];
       last_pair_ = {i, j};
-      return ++pairs < most_pairs;
+      return pairs.size() < most_pairs;
     });
-    return pairs < most_pairs;
+    if (pairs.size() >= most_pairs) return false;
+    // From here on where the neighbours of each edge end, and when all are there, where they begin.
+    std::partial_sum(first_neighbour_.begin(), first_neighbour_.end(), first_neighbour_.begin());
+    neighbours_.resize(2 * pairs.size());
+    for (const auto& [i, j] : pairs) {
+      neighbours_[--first_neighbour_[i]] = j;
+      neighbours_[--first_neighbour_[j]] = i;
+    }
+    return true;
   }
 
-  /// The distance of a point on an edge from another edge that it sees across the domain.
-  double across(const Point& x, int edge, int other) const {
-    const double none = std::numeric_limits<double>::infinity();
-    const Segment own = segment(edge), ends = segment(other);
+  /// Whether a point on an edge sees another one, at this vector from the nearest point of it, across the
+  /// domain.
+  bool is_across(const Point& x, int edge, int other, const Vector& from_other) const {
+    const Edge& own = edges_[edge];
     const bool before = rings_.next(other) == edge, behind = rings_.next(edge) == other;
     if (before || behind) {
-      const double to_tip = (x - (before ? own[0] : own[1])).norm();
-      if (to_tip < 0.5 * std::min(length(edge), length(other))) return none;
+      const double to_tip = (x - (before ? own.begin : Point(own.begin + own.way))).norm();
+      if (to_tip < 0.5 * std::min(own.length, edges_[other].length)) return false;
     }
-    const Point y = nearest_point(x, ends);
-    const Vector way = own[1] - own[0], to_other = y - x;
-    const double left = way.x() * to_other.y() - way.y() * to_other.x();
-    const bool inside = domain_on_the_left_[rings_.ring[edge]] ? left > 0 : left < 0;
-    return inside ? to_other.norm() : none;
+    const double right = own.way.x() * from_other.y() - own.way.y() * from_other.x();
+    return domain_on_the_left_[rings_.ring[edge]] ? right < 0 : right > 0;
   }
 
-  void add(const Piece& piece, const std::vector<int>& candidates) {
-    const Segment ends = segment(piece.edge);
-    const double whole = length(piece.edge), own = whole * (piece.end - piece.begin);
-    const Point middle = ends[0] + 0.5 * (piece.begin + piece.end) * (ends[1] - ends[0]);
+  /// `first`: the place in near_ from which on the edges stand that may be closest to a point of the piece.
+  void add(const Piece& piece, std::size_t first) {
+    const Edge& edge = edges_[piece.edge];
+    const double whole = edge.length, own = whole * (piece.end - piece.begin);
+    const Point middle = edge.begin + 0.5 * (piece.begin + piece.end) * edge.way;
     double width = whole;
-    for (const int other : candidates) {
-      const double distance = across(middle, piece.edge, other);
-      if (distance < closest_) closest_ = distance, opposite_ = other;
+    const std::size_t last = near_.size();
+    squares_.resize(last);
+    for (std::size_t i = first; i < last; ++i) {
+      const Vector from_other = edges_[near_[i]].to(middle);
+      squares_[i] = from_other.squaredNorm();
+      const double most = std::max(width, closest_);
+      if (squares_[i] >= most * most || !is_across(middle, piece.edge, near_[i], from_other)) continue;
+      const double distance = std::sqrt(squares_[i]);
+      if (distance < closest_) closest_ = distance, opposite_ = near_[i];
       width = std::min(width, distance);
     }
     constexpr double steps = 4;  // of a piece, that its middle speaks for
@@ -112,20 +143,24 @@ class Count {
       return;
     }
     if (found_.triangles >= enough_) return;
-    std::vector<int> closer;
-    std::ranges::copy_if(candidates, std::back_inserter(closer),
-                         [&](int other) { return distance(middle, segment(other)) <= width + own; });
+    const double reach = (width + own) * (width + own);
+    for (std::size_t i = first; i < last; ++i)
+      if (squares_[i] <= reach) near_.push_back(near_[i]);
     const double half = 0.5 * (piece.begin + piece.end);
-    add({piece.edge, piece.begin, half}, closer);
-    add({piece.edge, half, piece.end}, closer);
+    add({piece.edge, piece.begin, half}, last);
+    add({piece.edge, half, piece.end}, last);
+    near_.resize(last);
   }
 
   const Rings& rings_;
   const double enough_;
   std::vector<bool> domain_on_the_left_;  ///< of the edges of each ring
-  std::vector<std::vector<int>> near_;
+  std::vector<Edge> edges_;
+  std::vector<int> neighbours_, first_neighbour_;  ///< of all edges, one after the other
   std::array<int, 2> last_pair_{};
-  double closest_ = 0;
+  std::vector<int> near_;        ///< the neighbours of the edge at hand, and behind them those of its pieces
+  std::vector<double> squares_;  ///< of their distances
+  double closest_ = 0;           ///< to the edge at hand, of those across that are closer than it is long
   int opposite_ = 0;
   NarrowPlaces found_;
 };

@@ -173,9 +173,10 @@ std::vector<Fault> faults_of_size(const std::string& where, double size, double 
 /// Narrow places may not ask for more triangles than this, which take some seconds to make.
 constexpr double most_in_narrow_places = 300'000;
 
-/// Every check looks at all pairs of edges that may lie close to each other: so many take tenths of a second.
+/// Every check looks at all pairs of edges that may lie close to each other: so many take some tens of
+/// milliseconds.
 std::vector<Fault> intricate_faults(const Rings& given, const Rings& unit) {
-  constexpr std::size_t most_pairs = 500'000;
+  constexpr std::size_t most_pairs = 200'000;
   const std::optional<std::array<int, 2>> last = pair_of_near_edges(unit, most_pairs);
   if (!last) return {};
   return {{unit.pointer_to(last->front()),

@@ -4,6 +4,7 @@
 #include <functional>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -79,6 +80,33 @@ json zigzag(int vertices, double turn) {
   return polygon(points, {{"size", 1}});
 }
 
+/// A strip wound up, whose windings lie closer to each other than their edges are long.
+json spiral(int vertices, double turn, double rise, double width) {
+  json points = json::array();
+  const auto add = [&](int i, double radius) {
+    const double angle = turn * i;
+    points.push_back({(radius + rise * i) * std::cos(angle), (radius + rise * i) * std::sin(angle)});
+  };
+  for (int i = 0; i < vertices / 2; ++i) add(i, 1);
+  for (int i = vertices / 2 - 1; i >= 0; --i) add(i, 1 + width);
+  return polygon(points, {{"size", 5}});
+}
+
+/// Narrow teeth on a back.
+json comb(int teeth, double depth, double width) {
+  json points = json::array();
+  for (int i = 0; i < teeth; ++i) {
+    points.push_back({i, depth});
+    points.push_back({i + width, depth});
+    if (i == teeth - 1) break;
+    points.push_back({i + width, 1});
+    points.push_back({i + 1, 1});
+  }
+  points.push_back({teeth - 1 + width, 0});
+  points.push_back({0, 0});
+  return polygon(points, {{"size", depth}});
+}
+
 json swept(json problem, std::size_t entries, const json& entry) {
   problem["sweep"] = json(entries, entry);
   return problem;
@@ -97,6 +125,21 @@ TEST(Budget, APolygonIsMeasuredAndNotMeshed) {
   for (int i = 0; i < 500; ++i)
     local["mesh"]["sizes"].push_back({{"at", {1e-3 * i, 0}}, {"radius", 0.01}, {"size", 1e-3}});
   EXPECT_EQ(found_soon(local), "");
+}
+
+/// Pairs of edges that lie closer to each other than they are long are many.
+TEST(Budget, AnIntricatePolygonIsMeasuredTooOrRefused) {
+  for (const int vertices : {3998, 9998})
+    for (const double width : {0.1, 0.3})
+      EXPECT_THAT(found_soon(spiral(vertices, 0.1, 0.01, width)), testing::Not("malformed"));
+  EXPECT_THAT(found_soon(spiral(9998, 0.07, 0.01, 0.4)), testing::Not("malformed"));
+  for (const double depth : {8., 20., 50.}) {
+    json problem = comb(2499, depth, 0.5);
+    EXPECT_THAT(found_soon(problem), testing::Not("malformed"));
+    for (int i = 0; i < 500; ++i)
+      problem["mesh"]["sizes"].push_back({{"at", {5 * i, depth / 2}}, {"radius", 50}, {"size", 0.4}});
+    EXPECT_THAT(found_soon(problem), testing::Not("malformed"));
+  }
 }
 
 TEST(Budget, APolygonHasLimits) {
