@@ -134,6 +134,45 @@ class Builder : public nlohmann::json_sax<json> {
   std::vector<std::string> names_;  ///< the member being read of each open object
 };
 
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Walks along a text and knows what is in a string.
+class Strings {
+ public:
+  explicit Strings(std::string_view text) : text_(text) {}
+
+  /// To be asked from place to place.
+  bool hold(std::size_t byte) {
+    for (; at_ < byte; ++at_) {
+      if (text_[at_] == '"') within_ = !within_;
+      if (within_ && text_[at_] == '\\') ++at_;
+    }
+    return within_;
+  }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool within_ = false;
+};
+
+/// The library would keep all digits of a number, and copy them into what it says of it. A look at each so
+/// many bytes finds them.
+void refuse_long_numbers(std::string_view text) {
+  Strings strings(text);
+  for (std::size_t look = limits::digits; look < text.size(); look += limits::digits) {
+    std::size_t begin = look, end = look;
+    while (begin > 0 && is_digit(text[begin - 1])) --begin;
+    while (end < text.size() && is_digit(text[end])) ++end;
+    if (end - begin > limits::digits && !strings.hold(begin))
+      throw MalformedJson("a number has more than " + std::to_string(limits::digits) + " digits in a row (" +
+                          place(text, begin) + ')');
+    look = std::max(look, end);
+  }
+}
+
 /// What the library would silently skip, or take for the end of the text.
 void refuse_what_is_no_text(std::string_view text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
@@ -148,6 +187,7 @@ void refuse_what_is_no_text(std::string_view text) {
 
 json parse_json(std::string_view text, Observer* observer) {
   refuse_what_is_no_text(text);
+  refuse_long_numbers(text);
   Builder builder(text, observer);
   json::sax_parse(text.begin(), text.end(), &builder);
   return builder.take();

@@ -12,6 +12,9 @@ namespace signorini::api::limits {
 inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 100'000;
 /// Of them, values that are not in the domain.
 inline constexpr std::size_t values_beside_domain = 300'000;
+/// Of a number, one after the other: a double is known by a few, and a million take as long as a thousand
+/// numbers.
+inline constexpr std::size_t digits = 1000;
 
 // Characters.
 inline constexpr std::size_t title = 200, part_name = 200, expression = 1000;

@@ -1,13 +1,31 @@
 #include "api/operator_key.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace signorini::api {
 
-std::string operator_key(const nlohmann::json& document) {
-  nlohmann::json key = document;
-  for (const char* const member : {"title", "load", "solver", "sweep", "study"}) key.erase(member);
-  for (auto& condition : key.at("boundary"))
+namespace {
+
+/// The conditions without their data.
+nlohmann::json kinds_of(nlohmann::json boundary) {
+  for (auto& condition : boundary)
     for (const char* const member : {"value", "gap", "pressure"}) condition.erase(member);
-  return key.dump();
+  return boundary;
+}
+
+}  // namespace
+
+std::string operator_key(const nlohmann::json& document) {
+  constexpr std::array others{"title", "load", "solver", "sweep", "study"};
+  std::string key;
+  // Member by member, for the domain may have megabytes.
+  for (const auto& [name, member] : document.items()) {
+    if (std::ranges::find(others, name) != others.end()) continue;
+    key.append(name).append(" ");
+    key.append(name == "boundary" ? kinds_of(member).dump() : member.dump()).append("\n");
+  }
+  return key;
 }
 
 std::string load_key(const nlohmann::json& patch) {

@@ -75,15 +75,22 @@ Request read_request(const Value& value) {
   return request;
 }
 
-}  // namespace
-
-Request parse_request(std::string_view text, Observer* observer) {
+/// A document of megabytes takes several times as much, and is gone when it is read.
+Request read_document(std::string_view text, Observer* observer) {
   const json document = parse_json(text, observer);
   Faults faults;
   Request request = read_request(Value(document, "", faults));
   faults.throw_if_any();
   request.problem.operator_key = operator_key(document);
   request.problem.load_key = load_key(json::object());
+  return request;
+}
+
+}  // namespace
+
+Request parse_request(std::string_view text, Observer* observer) {
+  Request request = read_document(text, observer);
+  if (observer && !observer->keep_going()) throw Cancelled();
   if (auto found = validate(request.problem, request.settings); !found.empty())
     throw InvalidProblem(std::move(found));
   if (auto found = faults_of_sweep(request.problem, request.sweep, most_steps_of_sweep, nullptr);

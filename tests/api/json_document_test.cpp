@@ -71,6 +71,21 @@ TEST(ParseJson, RefusesWhatIsNoUtf8InWordsThatAre) {
   EXPECT_EQ(refusal("\"\xf0\x9f\x98\x80\""), "accepted");
 }
 
+TEST(ParseJson, RefusesNumbersOfCountlessDigits) {
+  const std::string digits(1000, '1'), more = digits + "1";
+  for (const std::string& number : {"0." + digits, "-0." + digits + "e-5", "1e-0" + digits.substr(1)})
+    EXPECT_EQ(refusal("[7, " + number + "]"), "accepted") << number;
+  for (const std::string& number : {more, "-" + more, "0." + more, "1e" + more, std::string(1'000'000, '0')})
+    EXPECT_THAT(refusal("[\n7, " + number + "]"), HasSubstr("more than 1000 digits in a row (line 2"))
+        << number;
+}
+
+TEST(ParseJson, TakesCountlessDigitsInStrings) {
+  const std::string digits(5000, '1');
+  EXPECT_EQ(refusal(R"({"a": ")" + digits + R"(", "b": "\"\\)" + digits + R"("})"), "accepted");
+  EXPECT_THAT(refusal(R"({"a": ")" + digits + R"(\\", "b": )" + digits + "}"), HasSubstr("1000 digits"));
+}
+
 TEST(ParseJson, StopsAtTheDepthLimitWithoutRecursion) {
   EXPECT_EQ(refusal(nested(64)), "accepted");
   EXPECT_THAT(refusal(nested(65)), HasSubstr("64 levels"));

@@ -50,7 +50,8 @@ TEST(Limits, StandInTheOpenapiDocument) {
 /// What no keyword of a schema can say.
 TEST(Limits, OfSumsAreDescribed) {
   const std::vector<std::pair<const char*, std::vector<std::size_t>>> descriptions{
-      {"Problem/description", {limits::texts, limits::values, limits::members, limits::nesting}},
+      {"Problem/description",
+       {limits::texts, limits::values, limits::members, limits::nesting, limits::digits}},
       {"Polygon/description", {limits::vertices, limits::arcs}},
       {"Problem/properties/sweep/description", {limits::sweep_conditions}}};
   for (const auto& [pointer, all] : descriptions)
