@@ -189,7 +189,8 @@ std::optional<Identity> BearerTokens::identify(const std::optional<std::string>&
   constexpr std::string_view scheme = "Bearer ";
   if (!authorization || strncasecmp(authorization->c_str(), scheme.data(), scheme.size()) != 0)
     return std::nullopt;
-  const std::string_view presented = std::string_view(*authorization).substr(scheme.size());
+  std::string_view presented = std::string_view(*authorization).substr(scheme.size());
+  presented.remove_prefix(std::min(presented.find_first_not_of(' '), presented.size()));  // RFC 9110, 11.4
   const Identity* found = nullptr;
   for (const Entry& entry : known->entries)
     if (equal(presented, entry.token)) found = &entry.identity;

@@ -97,8 +97,8 @@ bool is_cbor(std::string_view content_type) {
 
 std::optional<std::string> preferred(const std::optional<std::string>& accept,
                                      const std::vector<std::string>& media_types) {
-  if (!accept) return media_types.front();
-  const std::vector<Weighted> ranges = weighted_list(*accept);
+  const std::vector<Weighted> ranges = weighted_list(accept.value_or(""));
+  if (ranges.empty()) return media_types.front();
   std::optional<std::string> best;
   Rank best_rank;
   for (const std::string& media_type : media_types) {
@@ -112,7 +112,10 @@ std::optional<std::string> preferred(const std::optional<std::string>& accept,
 }
 
 bool accepts_coding(std::string_view accept_encoding, std::string_view coding) {
-  const std::vector<Weighted> codings = weighted_list(accept_encoding);
+  std::vector<Weighted> codings = weighted_list(accept_encoding);
+  // RFC 9110, 8.4.1.3.
+  for (Weighted& each : codings)
+    if (each.name == "x-gzip") each.name = "gzip";
   const double weight =
       weight_of_coding(coding, codings).value_or(weight_of_coding("*", codings).value_or(0));
   return weight > 0 && weight >= weight_of_coding("identity", codings).value_or(0);

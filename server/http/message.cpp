@@ -187,7 +187,8 @@ void read_coding(Message& message) {
 HttpError unknown_method() {
   return {501,
           {"method-not-implemented", "Method not implemented",
-           "This service knows no such method; it answers GET, HEAD, POST and DELETE, in capital letters."}};
+           "This service knows no such method; it answers GET, HEAD, POST, DELETE and OPTIONS, in capital "
+           "letters."}};
 }
 
 void lower_version(std::string& head) {

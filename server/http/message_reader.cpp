@@ -41,6 +41,12 @@ std::string text_of(string_view text) {
   return {text.data(), text.size()};
 }
 
+/// Of a head that is not whole, or cannot be read: a reply to HEAD has no body, whatever it is (RFC 9110,
+/// 9.3.2).
+std::string method_of_head(std::string_view head) {
+  return head.starts_with("HEAD ") ? "HEAD" : "";
+}
+
 }  // namespace
 
 /// Beast's parser, which gives what it reads to a message.
@@ -161,6 +167,7 @@ void MessageReader::skip_empty_line() {
 void MessageReader::read_head(std::size_t size) {
   if (size > limits_.head) throw head_too_long(limits_);
   std::string head = bytes_.substr(0, size);
+  message_.method = method_of_head(head);
   bytes_.erase(0, size);
   head_bytes_ = size;
   lower_version(head);
@@ -209,6 +216,7 @@ void MessageReader::end_message() {
 }
 
 void MessageReader::refuse(const HttpError& reason) {
+  if (message_.method.empty()) message_.method = method_of_head(bytes_);
   message_.refusal = reason;
   leave_body();
 }

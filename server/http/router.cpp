@@ -55,17 +55,22 @@ std::string negotiate(const Request& request, const Route& route) {
   throw not_acceptable(route);
 }
 
-HttpError method_not_allowed(const std::string& method, const std::string& allow) {
-  return {
-      405,
-      {"method-not-allowed", "Method not allowed", method + " is not for this path; allowed: " + allow + "."},
-      {{"Allow", allow}}};
+/// The methods of routes, and the one that asks for them.
+std::pair<std::string, std::string> allow(const std::string& methods) {
+  return {"Allow", methods + ", OPTIONS"};
 }
 
-/// To OPTIONS for the service as a whole (RFC 9110, 9.3.7).
-Response options() {
+HttpError method_not_allowed(const std::string& method, const std::string& methods) {
+  return {405,
+          {"method-not-allowed", "Method not allowed",
+           method + " is not for this path; allowed: " + allow(methods).second + "."},
+          {allow(methods)}};
+}
+
+/// To OPTIONS (RFC 9110, 9.3.7).
+Response options(const std::string& methods) {
   Response response = Response::empty(204);
-  response.headers.emplace_back("Allow", "GET, HEAD, POST, DELETE, OPTIONS");
+  response.headers.push_back(allow(methods));
   return response;
 }
 
@@ -90,8 +95,9 @@ Router::Found Router::find(Request& request) const {
     std::optional<PathParameters> parameters = match(route.pattern, request.path);
     if (!parameters) continue;
     request.route = route.pattern;
-    found.allow += (found.allow.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
-    if (found.route != nullptr || route.method != method) continue;
+    found.methods +=
+        (found.methods.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
+    if (found.route != nullptr || (route.method != method && method != "OPTIONS")) continue;
     found.route = &route;
     request.path_parameters = std::move(*parameters);
   }
@@ -104,8 +110,9 @@ const Route& Router::require(Request& request, const Found& found) const {
   const bool looks = request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
   if (found.audience() == Audience::clients)
     request.identity = access_.require(request, looks ? Scope::read : Scope::solve);
-  if (found.allow.empty()) throw not_found();
-  if (found.route == nullptr) throw method_not_allowed(request.method, found.allow);
+  if (found.methods.empty()) throw not_found();
+  if (found.route == nullptr) throw method_not_allowed(request.method, found.methods);
+  if (request.method == "OPTIONS") return *found.route;
   request.reply_type = negotiate(request, *found.route);
   return *found.route;
 }
@@ -120,14 +127,16 @@ bool Router::refuses(Request& request) const {
 }
 
 Response Router::route(Request& request) const {
-  if (request.path == "*") return options();
+  if (request.path == "*") return options("GET, HEAD, POST, DELETE");
   const Found found = find(request);
   if (found.audience() != Audience::probes) access_.count(request);
-  if (!found.allow.empty() && access_.cors.is_preflight(request)) return Cors::answer_preflight(found.allow);
+  if (!found.methods.empty() && access_.cors.is_preflight(request))
+    return Cors::answer_preflight(found.methods);
   const Route& route = require(request, found);
   if (found.audience() == Audience::clients) access_.count(request.identity);
   const SenderFields sender(request);
   return route.handler(request);
+  if (request.method == "OPTIONS") return options(found.methods);
 }
 
 }  // namespace signorini::server

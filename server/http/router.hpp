@@ -40,8 +40,8 @@ class Router {
       std::vector<Route> routes, Access& access, ReplyObserver observer = [](auto&&...) {})
       : routes_(std::move(routes)), access_(access), observer_(std::move(observer)) {}
 
-  /// Answers the request by its handler; HEAD is answered as GET. Throws HttpError 429, 421, 403, 401, 404,
-  /// 405 (with Allow) and 406.
+  /// Answers the request by its handler; HEAD is answered as GET, and OPTIONS by what the path allows. Throws
+  /// HttpError 429, 421, 403, 401, 404, 405 (with Allow) and 406.
   Response route(Request& request) const;
 
   /// Whether the request will be refused whatever its body says: 401, 404, 405, 406 and the like.
@@ -64,8 +64,8 @@ class Router {
  private:
   /// The routes that have a path.
   struct Found {
-    const Route* route = nullptr;  ///< for the method of the request, if there is one
-    std::string allow;             ///< the methods of all of them
+    const Route* route = nullptr;  ///< for the method of the request; for OPTIONS the first of them
+    std::string methods;           ///< of all of them
     Audience audience() const { return route == nullptr ? Audience::clients : route->audience; }
   };
 

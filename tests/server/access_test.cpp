@@ -45,6 +45,7 @@ TEST_F(Tokens, LetTheirHoldersIn) {
   for (const std::string& token : {first_token, second_token}) {
     EXPECT_EQ(get_with("Bearer " + token)->status, 200);
     EXPECT_EQ(get_with("bearer " + token)->status, 200);
+    EXPECT_EQ(get_with("Bearer   " + token)->status, 200);
   }
 }
 
@@ -67,6 +68,13 @@ TEST_F(Tokens, AreNotNeededByProbesAndReaders) {
   for (const char* path : {"/healthz", "/readyz", "/", "/docs", "/openapi.json"}) {
     EXPECT_EQ(get(path)->status, 200) << path;
   }
+}
+
+TEST_F(Tokens, AreAskedOfThoseWhoAskForOptions) {
+  expect_problem(client_.Options("/v1/solves"), 401);
+  EXPECT_EQ(client_.Options("/v1/solves", {{"Authorization", "Bearer " + first_token}})->status, 204);
+  EXPECT_EQ(client_.Options("/docs")->status, 204);
+  EXPECT_EQ(client_.Options("/healthz")->status, 204);
 }
 
 TEST(TokenFiles, MustHoldGoodTokens) {

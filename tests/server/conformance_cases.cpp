@@ -148,20 +148,66 @@ CaseGroup methods() {
         "PUT /v1/solves HTTP/1.1\r\nHost: localhost\r\n" + length,
         {405},
         goes_on,
-        "\r\nAllow: POST, GET, HEAD\r\n"},
+        "\r\nAllow: POST, GET, HEAD, OPTIONS\r\n"},
        {"PATCH",
         "PATCH /v1/validate HTTP/1.1\r\nHost: localhost\r\n" + length,
         {405},
         goes_on,
-        "\r\nAllow: POST\r\n"},
-       {"TRACE", line("TRACE / HTTP/1.1"), {405}, goes_on, "\r\nAllow: GET, HEAD\r\n"},
+        "\r\nAllow: POST, OPTIONS\r\n"},
+       {"TRACE", line("TRACE / HTTP/1.1"), {405}, goes_on, "\r\nAllow: GET, HEAD, OPTIONS\r\n"},
        {"DELETE", line("DELETE /healthz HTTP/1.1"), {405}, goes_on, "\r\nAllow: "},
-       {"OPTIONS", line("OPTIONS /healthz HTTP/1.1"), {405}, goes_on, "\r\nAllow: GET, HEAD\r\n"},
+       {"OPTIONS", line("OPTIONS /healthz HTTP/1.1"), {204}, goes_on, "\r\nAllow: GET, HEAD, OPTIONS\r\n"},
+       {"OPTIONS of what is posted",
+        line("OPTIONS /v1/solves HTTP/1.1"),
+        {204},
+        goes_on,
+        "\r\nAllow: POST, GET, HEAD, OPTIONS\r\n"},
+       {"OPTIONS with a body",
+        "OPTIONS /v1/validate HTTP/1.1\r\nHost: localhost\r\n" + length,
+        {204},
+        goes_on,
+        "\r\nAllow: POST, OPTIONS\r\n"},
+       {"OPTIONS of a target without a path",
+        line("OPTIONS http://localhost HTTP/1.1"),
+        {204},
+        goes_on,
+        "\r\nAllow: GET, HEAD, OPTIONS\r\n"},
+       {"OPTIONS whatever is accepted",
+        "OPTIONS /docs HTTP/1.1\r\nHost: localhost\r\nAccept: image/png\r\n\r\n",
+        {204}},
+       {"OPTIONS of nothing", line("OPTIONS /nothing HTTP/1.1"), {404}},
        {"OPTIONS of the service", line("OPTIONS * HTTP/1.1"), {204}, goes_on, "\r\nAllow: GET, HEAD, POST"},
        {"HEAD", line("HEAD /healthz HTTP/1.1"), {200}, goes_on, "\r\nContent-Length: 15\r\n"},
        {"HEAD of nothing", line("HEAD /nothing HTTP/1.1"), {404}, goes_on},
        {"HEAD of what can only be posted", line("HEAD /v1/validate HTTP/1.1"), {405}, goes_on},
        {"HEAD of a large document", line("HEAD /openapi.json HTTP/1.1"), {200}, goes_on}}};
+}
+
+/// A body after it would be taken for the next reply.
+CaseGroup refused_heads() {
+  const auto head = [](const std::string& headers) {
+    return "HEAD /healthz HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n";
+  };
+  return {"RefusedHead",  // RFC 9110, 9.3.2
+          {{"with too long a head", head("X: " + std::string(17'000, 'a') + "\r\n"), {431}, closes},
+           {"with too many headers", head(repeated(1000, "X: a\r\n")), {431}, closes},
+           {"with too long a target", line("HEAD /" + std::string(9000, 'a') + " HTTP/1.1"), {414}, closes},
+           {"of another version", line("HEAD / HTTP/2.0"), {505}, closes},
+           {"with a line that begins with a blank", head(" X: a\r\n"), {400}, closes},
+           {"with a line that ends with a line feed alone", head("X: a\n"), {400}, closes},
+           {"with a bad name", head("X Y: a\r\n"), {400}, closes},
+           {"with a zero byte", head("X: " + zero() + "\r\n"), {400}, closes},
+           {"without a host", "HEAD / HTTP/1.1\r\n\r\n", {400}, closes},
+           {"with a bad length", head("Content-Length: x\r\n"), {400}, closes},
+           {"with too long a body", head("Content-Length: 99999999\r\n"), {413}, closes},
+           {"with another coding", head("Transfer-Encoding: x, chunked\r\n"), {501}, closes},
+           {"with an expectation", head("Expect: x\r\n"), {417}, closes},
+           {"with a bad target", line("HEAD /< HTTP/1.1"), {400}, closes},
+           {"of what is no path", line("HEAD healthz HTTP/1.1"), {400}, closes},
+           {"behind its body",
+            head("Content-Length: 2\r\n") + "{}" + line("GET / HTTP/2.0"),
+            {200, 505},
+            closes}}};
 }
 
 CaseGroup targets() {
@@ -681,8 +727,8 @@ CaseGroup contents() {
 }  // namespace
 
 std::vector<CaseGroup> case_groups() {
-  return {lines(),   request_line(), methods(), targets(),     versions(),     hosts(),   fields(),
-          lengths(), codings(),      chunks(),  connections(), expectations(), contents()};
+  return {lines(),  request_line(), methods(), refused_heads(), targets(),     versions(),     hosts(),
+          fields(), lengths(),      codings(), chunks(),        connections(), expectations(), contents()};
 }
 
 }  // namespace signorini::server

@@ -9,7 +9,6 @@
 // merged
 //   others.
 // - Range is ignored (RFC 9110, 14.2 allows it): what may be large is made as it is sent.
-// - OPTIONS for a path is answered 405, which names what is allowed as well (RFC 9110, 9.3.7), but for CORS.
 // - A trailer with a bad Content-Length or Transfer-Encoding is refused, not dropped (RFC 9110, 6.5.1):
 // nobody means
 //   well by it.

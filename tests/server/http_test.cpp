@@ -17,13 +17,19 @@ TEST_F(Http, UnknownPathsAre404) {
 TEST_F(Http, WrongMethodsAre405WithAllow) {
   const auto reply = client_.Put("/v1/solves", "{}", "application/json");
   expect_problem(reply, 405);
-  EXPECT_EQ(reply->get_header_value("Allow"), "POST, GET, HEAD");
-  EXPECT_EQ(client_.Options("/v1/solves/x")->get_header_value("Allow"), "GET, HEAD, DELETE");
+  EXPECT_EQ(reply->get_header_value("Allow"), "POST, GET, HEAD, OPTIONS");
   expect_problem(client_.Patch("/v1/validate", "{}", "application/json"), 405);
   expect_problem(client_.Delete("/healthz"), 405);
   EXPECT_NE(
       send_raw(service_.port(), "TRACE / HTTP/1.1\r\nHost: h\r\nConnection: close\r\n\r\n").find(" 405 "),
       std::string::npos);
+}
+
+TEST_F(Http, OptionsAre204WithAllow) {
+  const auto reply = client_.Options("/v1/solves/x");
+  EXPECT_EQ(reply->status, 204);
+  EXPECT_EQ(reply->get_header_value("Allow"), "GET, HEAD, DELETE, OPTIONS");
+  expect_problem(client_.Options("/nothing"), 404);
 }
 
 TEST_F(Http, HeadIsGetWithoutABody) {
@@ -37,6 +43,10 @@ TEST_F(Http, HeadIsGetWithoutABody) {
 TEST_F(Http, AnAcceptThatExcludesJsonIs406) {
   expect_problem(client_.Get("/v1/solves", {{"Accept", "text/html"}}), 406);
   EXPECT_EQ(client_.Get("/v1/solves", {{"Accept", "text/html, */*;q=0.1"}})->status, 200);
+}
+
+TEST_F(Http, AnEmptyAcceptTakesEverything) {
+  EXPECT_EQ(client_.Get("/v1/solves", {{"Accept", ""}})->status, 200);
 }
 
 TEST_F(Http, ABodyThatIsNotJsonIs415) {

@@ -34,6 +34,11 @@ TEST(Accept, TakesTheMostSpecificRange) {
   EXPECT_TRUE(accepts("*/*;q=0, application/json"));
 }
 
+TEST(Accept, TakesEverythingIfItIsEmpty) {
+  EXPECT_EQ(preferred("", {"text/html"}), "text/html");
+  EXPECT_EQ(preferred(" , ", {"text/html", "text/csv"}), "text/html");
+}
+
 TEST(Accept, PrefersTheLargestWeightThenTheNamedThenTheFirstType) {
   const auto chosen = [](const std::optional<std::string>& accept) {
     return preferred(accept, {"application/json", "application/cbor"}).value_or("none");
@@ -54,6 +59,13 @@ TEST(AcceptEncoding, HonoursWeightZero) {
   EXPECT_FALSE(accepts_coding("gzip;q=0", "gzip"));
   EXPECT_FALSE(accepts_coding("", "gzip"));
   EXPECT_FALSE(accepts_coding("br, gzip;q=0.0, *", "gzip"));
+}
+
+/// RFC 9110, 8.4.1.3.
+TEST(AcceptEncoding, KnowsGzipByItsOldName) {
+  EXPECT_TRUE(accepts_coding("x-gzip", "gzip"));
+  EXPECT_TRUE(accepts_coding("br, X-GZIP;q=0.5", "gzip"));
+  EXPECT_FALSE(accepts_coding("x-gzip;q=0, *", "gzip"));
 }
 
 TEST(AcceptEncoding, HonoursTheRankOfAPlainBody) {
