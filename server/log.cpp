@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <vector>
 
 #include <spdlog/spdlog.h>
@@ -22,6 +24,31 @@ struct Field {
 };
 
 thread_local std::vector<Field> fields;
+
+/// What no line may show.
+class Secrets {
+ public:
+  void add(const std::vector<std::string>& texts) {
+    const std::lock_guard lock(mutex_);
+    texts_.insert(texts.begin(), texts.end());
+  }
+
+  void take_out_of(std::string& text) const {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& secret : texts_)
+      for (std::size_t at = 0; (at = text.find(secret, at)) != std::string::npos;)
+        text.replace(at, secret.size(), "***");
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::set<std::string> texts_;
+};
+
+Secrets& secrets() {
+  static Secrets all;
+  return all;
+}
 
 /// Calls `visit(field)` for every field that no later one hides.
 template <typename Visit>
@@ -81,8 +108,17 @@ void start_log(const std::string& level, const std::string& format) {
   spdlog::set_default_logger(logger);
 }
 
+void hide_in_log(const std::vector<std::string>& texts) {
+  secrets().add(texts);
+}
+
+std::string without_secrets(std::string text) {
+  secrets().take_out_of(text);
+  return text;
+}
+
 LogField::LogField(std::string_view name, std::string text) {
-  fields.push_back({name, std::move(text)});
+  fields.push_back({name, without_secrets(std::move(text))});
 }
 
 LogField::LogField(std::string_view name, std::int64_t number) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace signorini::server {
 
@@ -10,6 +11,13 @@ namespace signorini::server {
 /// as name=value, message) or `json` (an object a line: `time`, `level`, `message`, the fields). Nobody waits
 /// for who reads them: what is not read in time is lost, and a line says how much.
 void start_log(const std::string& level, const std::string& format = "text");
+
+/// From now on no field of a line shows one of these texts, whoever has put it there: asterisks stand in its
+/// place.
+void hide_in_log(const std::vector<std::string>& texts);
+
+/// The text as a line may show it.
+std::string without_secrets(std::string text);
 
 /// A field of every line that this thread writes while the object lives, such as the job that it works on. Of
 /// two with the same name the later one counts. Objects must end in the reverse order of their making.

@@ -17,6 +17,7 @@
 #include <CLI/CLI.hpp>
 
 #include "server/access/request_rate.hpp"
+#include "server/log.hpp"
 
 namespace signorini::server {
 namespace {
@@ -175,6 +176,9 @@ std::shared_ptr<const BearerTokens::Table> BearerTokens::read(const std::string&
     }
   }
   if (table->entries.empty()) throw BadTokenFile("the token file " + file + " holds no token (--token-file)");
+  std::vector<std::string> tokens;
+  for (const Entry& entry : table->entries) tokens.push_back(entry.token);
+  hide_in_log(tokens);
   return table;
 }
 

@@ -1,6 +1,7 @@
 #include "server/http/dispatch.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -53,15 +54,39 @@ Response made_by(const Make& make) {
   }
 }
 
-/// A client chooses these bytes: they must not start a line of their own, fill the log, or tell a token that was
-/// sent where none belongs (RFC 6750, 2.3).
+/// Whether a query parameter would carry a token (RFC 6750, 2.3), however it is written.
+bool is_for_token(std::string_view name) {
+  std::string plain = percent_decoded(name);
+  std::ranges::transform(plain, plain.begin(), [](unsigned char c) { return std::tolower(c); });
+  return plain.find("access_token") != std::string::npos;
+}
+
+/// A segment of a path or a parameter of a query, in which a token was sent where none belongs.
+std::string without_tokens(std::string_view piece) {
+  const std::size_t sign = piece.find('=');
+  if (sign != std::string_view::npos && is_for_token(piece.substr(0, sign)))
+    return std::string(piece.substr(0, sign)) + "=***";
+  const std::string plain = percent_decoded(piece);
+  return without_secrets(plain) == plain ? std::string(piece) : "***";
+}
+
+std::string target_for_log(std::string_view target) {
+  std::string text;
+  std::string_view separator = "/?";
+  while (!target.empty()) {
+    const std::size_t end = std::min(target.find_first_of(separator), target.size());
+    text += without_tokens(target.substr(0, end));
+    if (end < target.size()) text += target[end];
+    if (text.ends_with('?')) separator = "&";
+    target.remove_prefix(std::min(end + 1, target.size()));
+  }
+  return text;
+}
+
+/// A client chooses these bytes: they must not start a line of their own, or fill the log.
 std::string for_log(std::string text) {
   constexpr std::size_t longest = 200;
-  constexpr std::string_view token = "access_token=";
-  for (std::size_t at = 0; (at = text.find(token, at)) != std::string::npos;) {
-    at += token.size();
-    text.replace(at, std::min(text.find('&', at), text.size()) - at, "***");
-  }
+  text = without_secrets(std::move(text));
   if (text.size() > longest) text.replace(longest, std::string::npos, "...");
   for (char& c : text) {
     if (c < 0x21 || c > 0x7e) c = '?';
@@ -88,7 +113,8 @@ void finish(const Router& router, const Request& request, Response& response) {
   response.headers.emplace_back("X-Request-Id", request.id);
   if (request.trace) response.headers.emplace_back("traceparent", traceparent(*request.trace));
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - request.begun;
-  const LogField method("method", for_log(request.method)), path("path", for_log(request.target));
+  const LogField method("method", for_log(request.method)),
+      path("path", for_log(target_for_log(request.target)));
   const LogField status("status", std::int64_t{response.status});
   std::optional<LogField> job;
   if (!response.job.empty()) job.emplace("job", response.job);

@@ -7,22 +7,6 @@
 namespace signorini::server {
 namespace {
 
-/// The percent signs of a target are known to be followed by two digits.
-std::string decoded(std::string_view text) {
-  std::string plain;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%') {
-      unsigned octet = 0;
-      std::from_chars(text.data() + i + 1, text.data() + i + 3, octet, 16);
-      plain += static_cast<char>(octet);
-      i += 2;
-    } else {
-      plain += text[i] == '+' ? ' ' : text[i];
-    }
-  }
-  return plain;
-}
-
 template <class Number>
 std::optional<Number> whole_number(const std::string& text) {
   Number number{};
@@ -52,6 +36,22 @@ std::string names(std::initializer_list<std::string_view> allowed) {
 
 }  // namespace
 
+std::string percent_decoded(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned octet = 0;
+    const char* const digits = text.data() + i + 1;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(digits, digits + 2, octet, 16).ptr == digits + 2) {
+      plain += static_cast<char>(octet);
+      i += 2;
+    } else {
+      plain += text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return plain;
+}
+
 Query read_query(std::string_view text) {
   Query query;
   while (!text.empty()) {
@@ -59,7 +59,8 @@ Query read_query(std::string_view text) {
     text.remove_prefix(std::min(pair.size() + 1, text.size()));
     const std::size_t end = std::min(pair.find('='), pair.size());
     if (pair.empty()) continue;
-    query.emplace(decoded(pair.substr(0, end)), decoded(pair.substr(std::min(end + 1, pair.size()))));
+    query.emplace(percent_decoded(pair.substr(0, end)),
+                  percent_decoded(pair.substr(std::min(end + 1, pair.size()))));
   }
   return query;
 }

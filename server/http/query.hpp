@@ -10,6 +10,9 @@
 
 namespace signorini::server {
 
+/// The text in which octets are percent-encoded, and a plus is a blank.
+std::string percent_decoded(std::string_view text);
+
 /// Reads `name=value&...` with percent-encoded names and values, in which a plus is a blank.
 Query read_query(std::string_view text);
 

@@ -185,6 +185,34 @@ TEST(TokenFile, IsReadAgainOnHangupAndItsTokensStayOutOfTheLog) {
         << daemon.process().standard_error();
 }
 
+/// Where none belongs, in any spelling, and also if it is no token of this service.
+TEST(TokenFile, HidesTokensInTheLogWhereverClientsPutThem) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() + "/tokens", other = "somebody-elses-token";
+  std::ofstream(file) << "anne read,solve " << anne << "\n";
+  Daemon daemon({"--token-file", file});
+  httplib::Client client("127.0.0.1", daemon.port());
+  client.set_url_encode(false);
+  std::string coded = anne;
+  coded.replace(3, 1,
+                "%" + std::string(1, "0123456789ABCDEF"[anne[3] / 16]) + "0123456789ABCDEF"[anne[3] % 16]);
+  for (const std::string& query :
+       {"access_token=" + other, "access%5Ftoken=" + other, "%61ccess_token=" + other,
+        "Access_Token=" + other, "ACCESS_TOKEN=" + other + "/" + other, "x;access_token=" + other,
+        "limit=1&access_token=" + other, "limit=" + anne, "access%5ftoken=" + anne, "limit=" + coded})
+    EXPECT_EQ(client.Get("/v1/solves?" + query)->status, 401);
+  EXPECT_EQ(client.Get("/v1/solves/" + anne)->status, 401);
+  const auto reply = client.Get("/healthz", {{"X-Request-Id", anne}});
+  EXPECT_EQ(reply->get_header_value("X-Request-Id"), anne);
+  const std::string raw = "GET /v1/solves?Access_Token=" + other + "< HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  EXPECT_NE(send_raw(daemon.port(), raw).find(" 400 "), std::string::npos);
+  const std::string log = daemon.process().standard_error();
+  for (const std::string& secret : {anne, coded, other})
+    EXPECT_EQ(log.find(secret), std::string::npos) << log;
+  EXPECT_NE(log.find("path=/v1/solves?limit=1&access_token=*** "), std::string::npos) << log;
+  EXPECT_NE(log.find("request=*** "), std::string::npos) << log;
+}
+
 TEST(Hangup, EndsNoService) {
   Daemon daemon;
   daemon.process().signal(SIGHUP);
