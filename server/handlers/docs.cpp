@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/openapi.hpp"
+#include "server/http/content.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 
@@ -33,7 +34,10 @@ Response page_response(std::string_view file) {
 
 Response get_openapi(Service&, const Request& request) {
   allow_only(request.query, {});
-  return Response::json(200, api::openapi_document());
+  static const std::string compressed_document = compressed(api::openapi_document());
+  Response response = Response::json(200, api::openapi_document());
+  response.compressed = &compressed_document;
+  return response;
 }
 
 Response get_docs(Service&, const Request& request) {

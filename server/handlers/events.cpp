@@ -205,8 +205,8 @@ Response get_events(Service& service, const Request& request) {
   const std::shared_ptr<void> seat = service.events.places().take();
   if (!seat) throw too_many_subscribers(service.events.places().count());
   const auto source = std::make_shared<SolveEvents>(service.store, job.id, watch, place);
-  response.take_connection = [&events = service.events, source, seat](int socket) {
-    events.add(socket, source, seat);
+  response.take_connection = [&events = service.events, source, seat](int socket, std::string head) {
+    events.add(socket, std::move(head), source, seat);
   };
   return response;
 }

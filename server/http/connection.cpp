@@ -118,6 +118,25 @@ bool Connection::wait_writable() {
   return wait_in_place(Clock::now() + (stopping() ? std::chrono::seconds(1) : limits_.time));
 }
 
+void Connection::put(std::string reply) {
+  reply_ = std::move(reply);
+  delivered_ = 0;
+}
+
+Delivery Connection::deliver() {
+  while (undelivered() > 0) {
+    const ssize_t sent =
+        ::send(socket_, reply_.data() + delivered_, undelivered(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && errno == EAGAIN) return Delivery::part;
+    if (sent <= 0) return Delivery::failed;
+    delivered_ += static_cast<std::size_t>(sent);
+    sent_ += static_cast<std::uint64_t>(sent);
+  }
+  put({});
+  return Delivery::whole;
+}
+
 void Connection::begin_reply(std::function<bool()> in_the_way) {
   in_the_way_ = std::move(in_the_way);
   patient_since_ = paced_since_ = Clock::now();
@@ -126,14 +145,13 @@ void Connection::begin_reply(std::function<bool()> in_the_way) {
   is_slow_ = false;
 }
 
-bool Connection::send(std::string_view bytes, bool more) {
+bool Connection::send(std::string_view bytes) {
   while (!bytes.empty()) {
     if (!wait_writable()) {
       forget_unsent();
       return false;
     }
-    const ssize_t sent =
-        ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT | (more ? MSG_MORE : 0));
+    const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && (errno == EAGAIN || errno == EINTR)) continue;
     if (sent <= 0) return false;
     sent_ += static_cast<std::uint64_t>(sent);
@@ -142,7 +160,6 @@ bool Connection::send(std::string_view bytes, bool more) {
   return true;
 }
 
-/// When the socket is closed, the system does not keep what the client has not taken either.
 void Connection::forget_unsent() const {
   const linger at_once{1, 0};
   setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));

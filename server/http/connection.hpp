@@ -23,6 +23,9 @@ struct WriteLimits {
 /// What came of an attempt to receive.
 enum class Receipt { bytes, nothing, closed };
 
+/// How far a client has taken a reply.
+enum class Delivery { whole, part, failed };
+
 /// One client's connection, from its acceptance until it is closed or given away.
 class Connection {
  public:
@@ -46,16 +49,26 @@ class Connection {
   /// Takes what has come, some 16 KiB at most, without waiting, and gives it to the reader.
   Receipt receive();
 
-  /// From now on the client is to take a reply; others may wait for what that holds.
+  /// A reply that is sent without waiting, by deliver().
+  void put(std::string reply);
+  /// Sends as much of it as the client takes at once.
+  Delivery deliver();
+  /// What is left of it.
+  std::size_t undelivered() const { return reply_.size() - delivered_; }
+
+  /// From now on the client is to take a reply that is written meanwhile; others may wait for what that
+  /// holds.
   void begin_reply(std::function<bool()> in_the_way);
-  /// Sends all of it; false if the client does not take it. `more` follows at once.
-  bool send(std::string_view bytes, bool more = false);
+  /// Sends all of it, and waits until the client has taken it; false if it does not.
+  bool send(std::string_view bytes);
   /// Sends as much of it as the client takes at once.
   void send_at_once(std::string_view text) const;
   /// Ends the sending side. What the client sends from now on is read over.
   void end_sending();
 
   /// The socket, for somebody else to close.
+  /// When the socket is closed, the system does not keep what the client has not taken either.
+  void forget_unsent() const;
   int give_away();
 
  private:
@@ -66,7 +79,6 @@ class Connection {
   bool wait_in_place(Clock::time_point until);
   std::uint64_t acknowledged() const;
   bool is_in_the_way();
-  void forget_unsent() const;
 
   std::shared_ptr<void> place_;
   int socket_;
@@ -78,6 +90,8 @@ class Connection {
   std::function<bool()> in_the_way_;
   std::uint64_t sent_ = 0;  ///< in all
   Clock::time_point patient_since_;
+  std::string reply_;
+  std::size_t delivered_ = 0;  ///< of it
   std::uint64_t patient_from_ = 0;  ///< of what was sent
   Clock::time_point paced_since_;
   std::uint64_t paced_from_ = 0;  ///< of what was acknowledged

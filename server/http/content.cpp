@@ -10,7 +10,8 @@
 namespace signorini::server {
 namespace {
 
-constexpr std::size_t longest_short_body = std::size_t{64} * 1024;
+/// A list of solves, as long as it is without a word.
+constexpr std::size_t longest_short_body = std::size_t{256} * 1024;
 
 /// A shorter body fits into one packet as it is.
 constexpr std::size_t shortest_compressed_body = 1024;
@@ -18,16 +19,6 @@ constexpr std::size_t shortest_compressed_body = 1024;
 bool write_compressed(const BodyWriter& write, const PieceSink& sink) {
   api::Gzip gzip(sink);
   return write([&](std::string_view piece) { return gzip.put(piece); }) && gzip.finish();
-}
-
-std::string compressed(const std::string& body) {
-  std::string text;
-  const auto append = [&](std::string_view piece) {
-    text += piece;
-    return true;
-  };
-  write_compressed([&](const PieceSink& sink) { return sink(body); }, append);
-  return text;
 }
 
 /// By its names in any case; nothing if it is not known.
@@ -53,6 +44,16 @@ HttpError broken_body() {
 
 }  // namespace
 
+std::string compressed(const std::string& text) {
+  std::string bytes;
+  const auto append = [&](std::string_view piece) {
+    bytes += piece;
+    return true;
+  };
+  write_compressed([&](const PieceSink& sink) { return sink(text); }, append);
+  return bytes;
+}
+
 void take_if_short(Response& response) {
   if (!response.write_body) return;
   std::string body;
@@ -72,7 +73,7 @@ void compress(Response& response) {
       return write_compressed(write, sink);
     };
   } else if (response.body.size() >= shortest_compressed_body) {
-    response.body = compressed(response.body);
+    response.body = response.compressed ? *response.compressed : compressed(response.body);
   } else {
     return;
   }

@@ -24,8 +24,9 @@ constexpr int turns = 16;       // of one subscriber before the others have thei
 }  // namespace
 
 struct EventStreams::Subscriber {
-  Subscriber(int of_client, std::shared_ptr<EventSource> events, std::shared_ptr<void> of_limit)
-      : socket(of_client), source(std::move(events)), place(std::move(of_limit)) {}
+  Subscriber(int of_client, std::string head, std::shared_ptr<EventSource> events,
+             std::shared_ptr<void> of_limit)
+      : socket(of_client), source(std::move(events)), place(std::move(of_limit)), unsent(std::move(head)) {}
   ~Subscriber() {
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
@@ -104,10 +105,12 @@ EventStreams::~EventStreams() {
   ::close(wake_event_);
 }
 
-void EventStreams::add(int socket, std::shared_ptr<EventSource> source, std::shared_ptr<void> place) {
+void EventStreams::add(int socket, std::string head, std::shared_ptr<EventSource> source,
+                       std::shared_ptr<void> place) {
   {
     const std::lock_guard lock(mutex_);
-    newcomers_.push_back(std::make_unique<Subscriber>(socket, std::move(source), std::move(place)));
+    newcomers_.push_back(
+        std::make_unique<Subscriber>(socket, std::move(head), std::move(source), std::move(place)));
   }
   ::eventfd_write(wake_event_, 1);
 }

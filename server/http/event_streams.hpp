@@ -39,8 +39,9 @@ class EventStreams {
   /// One for each subscriber.
   Places& places() { return places_; }
 
-  /// Sends the events of the source to the socket, which is closed when they have ended.
-  void add(int socket, std::shared_ptr<EventSource> source, std::shared_ptr<void> place);
+  /// Sends the head of the reply and the events of the source to the socket, which is closed when they have
+  /// ended.
+  void add(int socket, std::string head, std::shared_ptr<EventSource> source, std::shared_ptr<void> place);
 
   /// Ends all streams after what their sources have to say now.
   void stop();

@@ -17,6 +17,7 @@
 #include "server/http/content.hpp"
 #include "server/http/crew.hpp"
 #include "server/http/dispatch.hpp"
+#include "server/http/hatch.hpp"
 #include "server/http/lobby.hpp"
 #include "server/http/query.hpp"
 #include "server/http/reply.hpp"
@@ -120,7 +121,7 @@ struct Exchange {
 }  // namespace
 
 /// Connections wait in the lobby until a request has come, in the waiting room until a reply can be made, and
-/// are answered by a crew between.
+/// at the hatch until it is taken; a crew answers them between.
 class Listener::Impl {
  public:
   Impl(const ListenerOptions& options, const Router& router)
@@ -134,6 +135,11 @@ class Listener::Impl {
         probes_crew_(2, 2),
         readers_(readers, 1),
         carriers_(options.threads, most_carriers_at_work()),
+        hatch_({},
+               [this](std::shared_ptr<Connection> connection, bool goes_on) {
+                 connection->keep_place(lobby_.take_place());
+                 move_on(std::move(connection), goes_on);
+               }),
         lobby_(
             lobby_limits(options),
             [this](Connection& connection) {
@@ -173,6 +179,7 @@ class Listener::Impl {
     probes_crew_.shutdown();
     readers_.shutdown();
     carriers_.shutdown();
+    hatch_.stop();
   }
 
  private:
@@ -195,8 +202,10 @@ class Listener::Impl {
   }
 
   void welcome(int socket) {
-    const int yes = 1;
+    // The system would keep megabytes of replies for a client who reads none.
+    const int yes = 1, most_unsent = 128 * 1024;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
+    setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent, sizeof(most_unsent));
     std::shared_ptr<void> place = lobby_.take_place();
     if (!place) {
       ::close(socket);
@@ -252,18 +261,29 @@ class Listener::Impl {
 
   /// By the crew at hand, but what is long by those who carry such.
   void reply(const Crew& crew, const std::shared_ptr<Exchange>& exchange, Response response) {
-    if (!response.write_body || &crew == &carriers_) return send(*exchange, response);
-    carriers_.enqueue([this, exchange, response = std::move(response)] { send(*exchange, response); });
+    Connection& connection = *exchange->connection;
+    const Message& message = exchange->message;
+    if (response.take_connection) {
+      std::string head = reply_text(message, response);
+      return response.take_connection(connection.give_away(), std::move(head));
+    }
+    if (response.write_body && message.method != "HEAD") {
+      if (&crew == &carriers_) return carry(*exchange, response);
+      return carriers_.enqueue([this, exchange, response = std::move(response)] { carry(*exchange, response); });
+    }
+    connection.keep_place(nullptr);
+    hatch_.deliver(exchange->connection, reply_text(message, response), goes_on(message, response));
   }
 
-  void send(Exchange& exchange, const Response& response) {
-    const bool more = send_reply(*exchange.connection, exchange.message, response, exchange.request.id);
-    if (response.take_connection) return response.take_connection(exchange.connection->give_away());
-    if (more) {
-      lobby_.admit(exchange.connection);
-    } else {
-      lobby_.see_off(exchange.connection);
-    }
+  /// A reply that is written while it is sent.
+  void carry(const Exchange& exchange, const Response& response) {
+    const bool sent =
+        send_written_reply(*exchange.connection, exchange.message, response, exchange.request.id);
+    move_on(exchange.connection, sent && goes_on(exchange.message, response));
+  }
+
+  void move_on(std::shared_ptr<Connection> connection, bool goes_on) {
+    goes_on ? lobby_.admit(std::move(connection)) : lobby_.see_off(std::move(connection));
   }
 
   const int socket_;
@@ -277,6 +297,7 @@ class Listener::Impl {
   Crew readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
   Crew carriers_;  ///< of long replies, so that short ones do not wait for them
   WaitingRoom waiting_room_;
+  Hatch hatch_;
   Lobby lobby_;
   std::atomic<bool> stopping_ = false;
   std::thread accepting_;

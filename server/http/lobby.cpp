@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "server/http/error.hpp"
-#include "server/http/reply.hpp"
 
 namespace signorini::server {
 namespace {
@@ -19,12 +18,6 @@ namespace {
 constexpr int look_around_ms = 250;  // how late somebody is sent away
 
 constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
-
-/// To a client whose request did not come in time.
-std::string too_late() {
-  const Response response = problem_response(408, request_timeout().details);
-  return reply_head(response, response.body.size()) + response.body;
-}
 
 }  // namespace
 
@@ -179,6 +172,11 @@ void Lobby::serve(Guests::iterator guest) {
   serve_(std::move(connection), std::move(body_place));
 }
 
+void Lobby::refuse(Guests::iterator guest, const HttpError& reason) {
+  guest->second.connection->reader().refuse(reason);
+  serve(guest);
+}
+
 void Lobby::let_in_long_bodies() {
   while (queued_ > 0) {
     std::shared_ptr<void> place = long_bodies_.take();
@@ -230,8 +228,11 @@ void Lobby::dismiss_late() {
     const auto next = std::next(found);
     const Guest& guest = found->second;
     if (guest.deadline <= now || is_too_slow(guest, now)) {
-      if (guest.stay != Stay::leaving && guest.begun) guest.connection->send_at_once(too_late());
-      remove(found);
+      if (guest.stay == Stay::leaving || !guest.begun) {
+        remove(found);
+      } else {
+        refuse(found, request_timeout());
+      }
     }
     found = next;
   }

@@ -82,6 +82,7 @@ class Lobby {
   void judge(Guests::iterator guest);
   void judge_body(Guests::iterator guest);
   void serve(Guests::iterator guest);
+  void refuse(Guests::iterator guest, const HttpError& reason);
   void let_in_long_bodies();
   bool is_too_slow(const Guest& guest, Clock::time_point now) const;
   void count(Guest& guest);

@@ -54,6 +54,8 @@ class MessageReader {
   void leave_body();
 
   /// The whole request. Begins with the next one, which may be there already.
+  /// The same of all that has not come: the message is refused.
+  void refuse(const HttpError& reason);
   Message next();
 
   /// Bytes that are held.
@@ -68,7 +70,6 @@ class MessageReader {
   void read_head(std::size_t size);
   void read_body();
   void judge_rest_of_chunks() const;
-  void refuse(const HttpError& reason);
   void end_message();
 
   const MessageLimits limits_;

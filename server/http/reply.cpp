@@ -81,36 +81,30 @@ bool send_pieces(Connection& connection, std::string head, Delimiter delimiter,
   return false;
 }
 
-bool send_body(Connection& connection, std::string head, Delimiter delimiter, const Response& response,
-               const std::string& log_id) {
-  if (!response.write_body) {
-    return connection.send(head, !response.body.empty()) && connection.send(response.body);
-  }
+}  // namespace
+
+bool goes_on(const Message& message, const Response& response) {
+  return message.may_follow && delimiter_of(message, response) != Delimiter::close;
+}
+
+std::string reply_text(const Message& message, const Response& response) {
+  const bool last = !goes_on(message, response);
+  std::string text = head(response, delimiter_of(message, response), response.body.size(), last);
+  if (message.method != "HEAD") text += response.body;
+  return text;
+}
+
+bool send_written_reply(Connection& connection, const Message& message, const Response& response,
+                        const std::string& log_id) {
+  connection.begin_reply(response.in_the_way);
   const LogField request("request", log_id);
   try {
-    return send_pieces(connection, std::move(head), delimiter, response.write_body);
+    return send_pieces(connection, reply_text(message, response), delimiter_of(message, response),
+                       response.write_body);
   } catch (const std::exception& error) {
     spdlog::error("the reply broke off: {}", error.what());
     return false;
   }
-}
-
-}  // namespace
-
-std::string reply_head(const Response& response, std::uint64_t length) {
-  return head(response, Delimiter::length, length, true);
-}
-
-bool send_reply(Connection& connection, const Message& message, const Response& response,
-                const std::string& log_id) {
-  const Delimiter delimiter = delimiter_of(message, response);
-  const bool last = !message.may_follow || delimiter == Delimiter::close;
-  const std::string start = head(response, delimiter, response.body.size(), last);
-  connection.begin_reply(response.in_the_way);
-  const bool has_body = message.method != "HEAD" && !response.take_connection;
-  const bool sent =
-      has_body ? send_body(connection, start, delimiter, response, log_id) : connection.send(start);
-  return sent && !last;
 }
 
 }  // namespace signorini::server

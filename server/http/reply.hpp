@@ -9,12 +9,16 @@
 
 namespace signorini::server {
 
-/// The head of the last reply on a connection, with the length of the body that follows.
-std::string reply_head(const Response& response, std::uint64_t length);
+/// Whether the connection takes another request after this reply.
+bool goes_on(const Message& message, const Response& response);
 
-/// Sends the reply to this request (RFC 9112, 6); `log_id` names the request where the reply breaks off.
-/// False if the connection cannot take another request.
-bool send_reply(Connection& connection, const Message& message, const Response& response,
-                const std::string& log_id);
+/// The reply to this request (RFC 9112, 6) in one piece: all of it but for a body that is still to be
+/// written, or that somebody else sends.
+std::string reply_text(const Message& message, const Response& response);
+
+/// Sends a reply while its body is written; `log_id` names the request where the reply breaks off. False if
+/// it does.
+bool send_written_reply(Connection& connection, const Message& message, const Response& response,
+                        const std::string& log_id);
 
 }  // namespace signorini::server

@@ -25,10 +25,12 @@ struct Response {
   int status = 200;
   std::string content_type;
   std::string body;
+  const std::string* compressed = nullptr;  ///< the body by gzip, if it is always the same
   BodyWriter write_body;
   std::function<bool()> in_the_way;  ///< whether others wait for what it holds until it is sent; may be empty
-  std::function<void(int socket)> take_connection;  ///< sends the body itself, from the end of the head on
-  std::shared_ptr<const LaterReply> later;          ///< then the rest says nothing
+  /// Sends the reply itself, of which the head is there.
+  std::function<void(int socket, std::string head)> take_connection;
+  std::shared_ptr<const LaterReply> later;  ///< then the rest says nothing
   std::vector<std::pair<std::string, std::string>> headers;
   std::string job;  ///< id of the job that the reply is about, for the log
 

@@ -11,6 +11,7 @@
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
+#include "reply_reader.hpp"
 
 namespace signorini::server {
 namespace {
@@ -116,6 +117,28 @@ TEST_F(Guests, WhoseLongBodiesStandInTheWay) {
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 422);
   EXPECT_LT(Clock::now() - begin, 30s);
+}
+
+/// 100 of them once made the list take five seconds: their replies, which they did not take, held the
+/// threads.
+TEST_F(Guests, WhoAskAgainAndAgainAndReadNothing) {
+  std::string requests;
+  for (int i = 0; i < 150; ++i) requests += "GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  std::vector<RawClient> guests;
+  for (int i = 0; i < 200; ++i) {
+    guests.emplace_back(port());
+    guests.back().turn_deaf();
+    guests.back().send(requests);
+  }
+  for (int i = 0; i < 8; ++i) {
+    expect_service();
+    std::this_thread::sleep_for(250ms);
+  }
+  // Whoever reads after all gets every reply.
+  const auto replies_of = [](const RawClient& guest) { return read_replies(guest.heard(), false).size(); };
+  std::vector<RawClient> reader;
+  reader.push_back(std::move(guests.back()));
+  EXPECT_TRUE(listen_until(reader, 20s * patience, [&] { return replies_of(reader[0]) == 150; }));
 }
 
 class Waiters : public ServiceTest {

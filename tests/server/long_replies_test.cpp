@@ -8,8 +8,6 @@
 #include <thread>
 #include <vector>
 
-#include <sys/socket.h>
-
 #include "child_process.hpp"
 #include "example_problems.hpp"
 #include "long_tests.hpp"
@@ -27,11 +25,9 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-/// Does not let the system take much for a client that does not read.
 RawClient deaf_client(int port, const std::string& path) {
   RawClient client(port);
-  const int little = 4096;
-  setsockopt(client.socket(), SOL_SOCKET, SO_RCVBUF, &little, sizeof(little));
+  client.turn_deaf();
   client.send("GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
   return client;
 }

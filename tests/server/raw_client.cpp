@@ -30,6 +30,11 @@ RawClient::~RawClient() {
 RawClient::RawClient(RawClient&& other) noexcept
     : socket_(std::exchange(other.socket_, -1)), closed_(other.closed_), heard_(std::move(other.heard_)) {}
 
+void RawClient::turn_deaf() const {
+  const int little = 4096;
+  setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &little, sizeof(little));
+}
+
 bool RawClient::send(const std::string& bytes) const {
   return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
 }

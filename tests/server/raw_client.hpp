@@ -15,6 +15,8 @@ class RawClient {
   RawClient(RawClient&& other) noexcept;
   RawClient& operator=(RawClient&&) = delete;
 
+  /// From now on the system takes little for it.
+  void turn_deaf() const;
   /// False if the service does not take it any more.
   bool send(const std::string& bytes) const;
   /// Takes what has come, without waiting.
