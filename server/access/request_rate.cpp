@@ -10,14 +10,13 @@ namespace {
 
 constexpr std::size_t many_clients = 10'000;
 
-/// What counts as one client.
+}  // namespace
+
 std::string network_of(const std::string& address) {
   in6_addr ipv6{};
   if (inet_pton(AF_INET6, address.c_str(), &ipv6) != 1 || IN6_IS_ADDR_V4MAPPED(&ipv6)) return address;
   return {reinterpret_cast<const char*>(ipv6.s6_addr), 8};
 }
-
-}  // namespace
 
 std::chrono::duration<double> RequestRate::count(const std::string& address, Clock::time_point now) {
   using Seconds = std::chrono::duration<double>;

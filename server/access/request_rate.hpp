@@ -7,6 +7,9 @@
 
 namespace signorini::server {
 
+/// What counts as one client: an address, of IPv6 the network of 64 bits.
+std::string network_of(const std::string& address);
+
 /// How many requests a client may send: so many a second, and those of one second at once.
 class RequestRate {
  public:

@@ -50,6 +50,27 @@ class ReleasedMemory {
   const bool is_much_;
 };
 
+/// Ends the reading of a problem whose client has left.
+class WhileClientWaits : public Observer {
+ public:
+  explicit WhileClientWaits(const Request& request) : request_(request) {}
+
+  bool keep_going() override { return !request_.client_left(); }
+
+  /// Throws Cancelled.
+  void check() {
+    if (!keep_going()) throw Cancelled();
+  }
+
+ private:
+  const Request& request_;
+};
+
+/// Nobody hears it, but it stands in the log.
+HttpError client_left() {
+  return {400, {"client-left", "The client left", "The client left before its problem was read."}};
+}
+
 /// 413 for a problem that would be too large here: what in it is, and how to make it smaller.
 HttpError too_large(const std::string& kind, const std::string& what, const std::string& pointer,
                     const std::string& detail) {
@@ -108,20 +129,16 @@ void require_short_study(const Intake& intake, const Limits& limits) {
           "finest meshes out, or lower study.adaptive.max_triangles.");
 }
 
-}  // namespace
-
-double Intake::memory() const {
-  return memory_with_study(estimate, runs);
-}
-
-Intake take_in(Service& service, const Request& request) {
-  const Limits& limits = service.limits;
+/// Throws Cancelled besides if the client leaves.
+Intake read(const Request& request, const Limits& limits) {
+  WhileClientWaits observer(request);
   Intake intake;
   const bool is_cbor = is_in_cbor(request);
   intake.text = request.read_body(limits.max_body_bytes);
   const ReleasedMemory released(intake.text.size());
   if (is_cbor) intake.text = json_of(intake.text, limits.max_body_bytes);
-  intake.request = api::parse_request(intake.text);
+  intake.request = api::parse_request(intake.text, &observer);
+  observer.check();
   intake.estimate =
       for_solve(estimate(intake.request.problem), intake.request.settings, intake.request.sweep.size());
   require_few_unknowns(intake, limits);
@@ -132,6 +149,20 @@ Intake take_in(Service& service, const Request& request) {
   require_short_study(intake, limits);
   require_little_memory(intake, limits);
   return intake;
+}
+
+}  // namespace
+
+double Intake::memory() const {
+  return memory_with_study(estimate, runs);
+}
+
+Intake take_in(Service& service, const Request& request) {
+  try {
+    return read(request, service.limits);
+  } catch (const Cancelled&) {
+    throw client_left();
+  }
 }
 
 Intake take_in_study(Service& service, const Request& request) {

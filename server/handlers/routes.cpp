@@ -17,14 +17,14 @@ Router routes(Service& service) {
     return [&service, handle](const Request& request) { return handle(service, request); };
   };
   // What is made of a whole result may be read, written and compressed for seconds.
-  const auto long_reply = [&with](const std::string& pattern, std::vector<std::string> media_types,
-                                  Response (*handle)(Service&, const Request&)) -> Route {
-    return {"GET",        pattern,           std::move(media_types),
-            with(handle), Audience::clients, [](const Query& query) { return !picks_summary_alone(query); }};
+  const auto has_result = [](const Query& query) { return !picks_summary_alone(query); };
+  const auto long_reply = [&](const std::string& pattern, std::vector<std::string> media_types,
+                              Response (*handle)(Service&, const Request&)) -> Route {
+    return {"GET", pattern, std::move(media_types), with(handle), Audience::clients, has_result};
   };
   std::vector<Route> table{
-      {"POST", "/v1/solves", document_types, with(post_solve)},
-      {"GET", "/v1/solves", document_types, with(list_solves)},
+      {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result},
+      {"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
       {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
       long_reply("/v1/solves/{id}/result", document_types, get_result),
@@ -35,7 +35,7 @@ Router routes(Service& service) {
       long_reply("/v1/solves/{id}/study.csv", {"text/csv"}, get_study_csv),
       long_reply("/v1/solves/{id}/history", document_types, get_history),
       {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},
-      {"POST", "/v1/studies", document_types, with(post_study)},
+      {"POST", "/v1/studies", document_types, with(post_study), Audience::clients, has_result},
       {"POST", "/v1/validate", document_types, with(validate_problem)},
       {"GET", "/v1/examples", document_types, with(list_examples)},
       {"GET", "/v1/examples/{name}", document_types, with(get_example)},

@@ -1,6 +1,7 @@
 #include "server/handlers/solves.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <spdlog/spdlog.h>
 
@@ -10,9 +11,10 @@
 #include "server/handlers/find_job.hpp"
 #include "server/handlers/intake.hpp"
 #include "server/handlers/wait.hpp"
+#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
-#include "server/http/sender_fields.hpp"
+#include "server/log.hpp"
 
 namespace signorini::server {
 namespace {
@@ -97,6 +99,12 @@ HttpError share_used_up(const std::string& name, std::size_t limit) {
       {{"Retry-After", "5"}}};
 }
 
+/// Others work while the disk does.
+std::string queue(Service& service, NewJob job) {
+  const Crew::Rest rest;
+  return service.scheduler.submit(std::move(job));
+}
+
 /// Queues the problem and returns the id of its job, or of the earlier one with the same key and problem.
 std::string submit(Service& service, const Request& request, Intake intake,
                    const std::optional<std::string>& key) {
@@ -112,7 +120,7 @@ std::string submit(Service& service, const Request& request, Intake intake,
   job.share = request.identity.share;
   const std::string new_id = job.id;
   try {
-    std::string id = service.scheduler.submit(std::move(job));
+    std::string id = queue(service, std::move(job));
     const LogField field("job", id);
     if (id == new_id) spdlog::info("accepted");
     return id;
@@ -169,26 +177,24 @@ Response answer_later(Service& service, const Request& request, const std::strin
                       const api::ResultFields& fields, std::shared_ptr<void> place) {
   using Clock = std::chrono::steady_clock;
   const auto watch = service.scheduler.watch(id);
-  LaterReply promise;
-  promise.until = Clock::now() + std::chrono::duration_cast<Clock::duration>(wait.time);
-  promise.place = std::move(place);
-  promise.subscribe = [watch](std::function<void()> ready) { return watch->tell(std::move(ready)); };
-  promise.make = [&service, &request, id, wait, fields](bool client_left) {
-    if (client_left && wait.or_cancel) {
-      const SenderFields sender(request);
-      const LogField field("job", id);
-      spdlog::info("the client left");
-      service.scheduler.cancel(id);
-    }
+  const auto promise = std::make_shared<LaterReply>();
+  promise->job = id;
+  promise->until = Clock::now() + std::chrono::duration_cast<Clock::duration>(wait.time);
+  promise->place = std::move(place);
+  promise->subscribe = [watch](std::function<void()> ready) { return watch->tell(std::move(ready)); };
+  promise->make = [&service, &request, id, wait, fields] {
     Response response = answer(service, request, service.store.find(id), true, fields);
     if (wait.preferred) response.headers.emplace_back("Preference-Applied", *wait.preferred);
     return response;
   };
+  promise->leave = [&service, id, cancel = wait.or_cancel] {
+    if (cancel) service.scheduler.cancel(id);
+  };
   // Asked after it is watched: if it had ended before, nobody would tell.
   const std::optional<Job> job = service.store.find(id);
-  if (!job || has_ended(job->status)) return promise.make(false);
+  if (!job || has_ended(job->status)) promise->until = Clock::now();
   Response response;
-  response.later = std::make_shared<LaterReply>(std::move(promise));
+  response.later = promise;
   return response;
 }
 
@@ -224,10 +230,9 @@ Response accept(Service& service, const Request& request,
   require_available(fields, components(intake.request.problem.material));
   const std::string id = submit(service, request, std::move(intake), key);
 
-  if (!wait) return answer(service, request, service.store.find(id), false, fields);
   // Where too many wait, nobody is refused for it: the status document says how to go on.
-  std::shared_ptr<void> place = service.waits.take();
-  if (!place) return answer(service, request, service.store.find(id), true, fields);
+  std::shared_ptr<void> place = wait ? service.waits.take() : nullptr;
+  if (!place) return answer(service, request, service.store.find(id), false, fields);
   return answer_later(service, request, id, *wait, fields, std::move(place));
 }
 
@@ -250,6 +255,11 @@ Response list_solves(Service& service, const Request& request) {
   return document_response(request, 200,
                            [&scheduler = service.scheduler, page = service.store.list(query),
                             query](api::DocumentWriter& out) { write_list(out, page, query, scheduler); });
+}
+
+bool asks_for_many(const Query& query) {
+  const std::string limit = parameter(query, "limit").value_or("0");
+  return std::strtol(limit.c_str(), nullptr, 10) > static_cast<long>(ListQuery().limit);
 }
 
 Response get_solve(Service& service, const Request& request) {

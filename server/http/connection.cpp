@@ -32,12 +32,23 @@ bool poll_until(int descriptor, short events, Clock::time_point until) {
   }
 }
 
+std::string address_of_client(int socket) {
+  sockaddr_storage address{};
+  socklen_t length = sizeof(address);
+  auto* generic = reinterpret_cast<sockaddr*>(&address);
+  std::array<char, NI_MAXHOST> host{};
+  if (::getpeername(socket, generic, &length) != 0) return {};
+  if (getnameinfo(generic, length, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
+  return host.data();
+}
+
 }  // namespace
 
 Connection::Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
                        std::shared_ptr<void> place)
     : place_(std::move(place)),
       socket_(socket),
+      remote_address_(address_of_client(socket)),
       stop_event_(stop_event),
       slow_readers_(slow_readers),
       reader_(limits) {}
@@ -48,14 +59,9 @@ Connection::~Connection() {
   ::close(socket_);
 }
 
-std::string Connection::remote_address() const {
-  sockaddr_storage address{};
-  socklen_t length = sizeof(address);
-  auto* generic = reinterpret_cast<sockaddr*>(&address);
-  std::array<char, NI_MAXHOST> host{};
-  if (::getpeername(socket_, generic, &length) != 0) return {};
-  if (getnameinfo(generic, length, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) return {};
-  return host.data();
+bool Connection::has_left() const {
+  pollfd polled{socket_, POLLRDHUP, 0};
+  return ::poll(&polled, 1, 0) > 0;
 }
 
 Receipt Connection::receive() {

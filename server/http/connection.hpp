@@ -42,7 +42,9 @@ class Connection {
   int socket() const { return socket_; }
   MessageReader& reader() { return reader_; }
   /// Of the client, in numbers.
-  std::string remote_address() const;
+  const std::string& remote_address() const { return remote_address_; }
+  /// Whether the client has closed the connection, its sending side at least.
+  bool has_left() const;
 
   void keep_place(std::shared_ptr<void> place) { place_ = std::move(place); }
 
@@ -65,10 +67,10 @@ class Connection {
   void send_at_once(std::string_view text) const;
   /// Ends the sending side. What the client sends from now on is read over.
   void end_sending();
-
-  /// The socket, for somebody else to close.
   /// When the socket is closed, the system does not keep what the client has not taken either.
   void forget_unsent() const;
+
+  /// The socket, for somebody else to close.
   int give_away();
 
  private:
@@ -82,16 +84,17 @@ class Connection {
 
   std::shared_ptr<void> place_;
   int socket_;
+  const std::string remote_address_;
   const int stop_event_;
   const WriteLimits limits_;
   Places& slow_readers_;
   MessageReader reader_;
   bool ended_ = false;
+  std::string reply_;
+  std::size_t delivered_ = 0;  ///< of it
   std::function<bool()> in_the_way_;
   std::uint64_t sent_ = 0;  ///< in all
   Clock::time_point patient_since_;
-  std::string reply_;
-  std::size_t delivered_ = 0;  ///< of it
   std::uint64_t patient_from_ = 0;  ///< of what was sent
   Clock::time_point paced_since_;
   std::uint64_t paced_from_ = 0;  ///< of what was acknowledged

@@ -17,10 +17,10 @@ Crew::~Crew() {
   shutdown();
 }
 
-void Crew::enqueue(std::function<void()> task) {
+void Crew::enqueue(Task task) {
   {
     const std::lock_guard lock(mutex_);
-    tasks_.push_back(std::move(task));
+    tasks_.add(std::move(task));
   }
   may_work_.notify_one();
 }
@@ -40,16 +40,26 @@ void Crew::work() {
   for (;;) {
     may_work_.wait(lock, [this] { return tasks_.empty() ? ending_ : at_work_ < most_at_work_; });
     if (tasks_.empty()) return;
-    std::function<void()> task = std::move(tasks_.front());
-    tasks_.pop_front();
+    std::vector<Task> unwanted = unwanted_now_and_then();
+    std::optional<Task> task = tasks_.take();
     ++at_work_;
     lock.unlock();
-    task();
-    task = nullptr;
+    unwanted.clear();
+    if (task && !(task->is_unwanted && task->is_unwanted())) task->work();
+    task.reset();
     lock.lock();
     --at_work_;
     if (ending_ && tasks_.empty()) may_work_.notify_all();
   }
+}
+
+/// What they hold is given back soon, also by those whose turn is far.
+std::vector<Task> Crew::unwanted_now_and_then() {
+  constexpr std::chrono::milliseconds between_looks{250};
+  const auto now = Clock::now();
+  if (now < look_again_) return {};
+  look_again_ = now + between_looks;
+  return tasks_.take_unwanted();
 }
 
 void Crew::leave_work() {

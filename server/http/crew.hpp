@@ -1,17 +1,18 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
-#include <deque>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "server/http/turns.hpp"
+
 namespace signorini::server {
 
-/// Threads that do what they are given, in the order in which it comes. Only a few are at work at the same
-/// time, for more would but take turns on the cores and be done later, all of them; but one that waits for a
-/// client or a solve is not at work, and another takes its place.
+/// Threads that do what they are given, sender by sender in turn. Only a few are at work at the same time,
+/// for more would but take turns on the cores and be done later, all of them; but one that waits for a client
+/// or a solve is not at work, and another takes its place. What a client has left behind is not begun.
 class Crew {
  public:
   /// `threads` in all, `at_work` at the same time.
@@ -21,7 +22,7 @@ class Crew {
   Crew(const Crew&) = delete;
   Crew& operator=(const Crew&) = delete;
 
-  void enqueue(std::function<void()> task);
+  void enqueue(Task task);
 
   /// Returns when everything that was enqueued is done.
   void shutdown();
@@ -37,14 +38,18 @@ class Crew {
   };
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void work();
+  std::vector<Task> unwanted_now_and_then();
   void leave_work();
   void return_to_work();
 
   const std::size_t most_at_work_;
   std::mutex mutex_;
   std::condition_variable may_work_;
-  std::deque<std::function<void()>> tasks_;
+  Turns tasks_;
+  Clock::time_point look_again_ = {};  ///< for tasks whose clients have left
   std::size_t at_work_ = 0;
   bool ending_ = false;
   std::vector<std::thread> threads_;

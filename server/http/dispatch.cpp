@@ -14,6 +14,7 @@
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
 #include "server/http/query.hpp"
+#include "server/http/sender_fields.hpp"
 #include "server/log.hpp"
 #include "server/unique_id.hpp"
 
@@ -151,11 +152,23 @@ Response dispatch(const Router& router, Request& request) {
   return response;
 }
 
-Response resume(const Router& router, const Request& request, const LaterReply& promised, bool client_left) {
+Response resume(const Router& router, const Request& request, const LaterReply& promised) {
   const RequestFields fields(request);
-  Response response = made_by([&] { return promised.make(client_left); });
+  Response response = made_by([&] { return promised.make(); });
   finish(router, request, response);
   return response;
+}
+
+void leave(const Request& request, const LaterReply& promised) {
+  const RequestFields fields(request);
+  const SenderFields sender(request);
+  const LogField job("job", promised.job);
+  spdlog::info("the client left");
+  try {
+    promised.leave();
+  } catch (...) {
+    spdlog::warn("{}", describe(std::current_exception()).details.detail);
+  }
 }
 
 Response refuse(const Router& router, const Request& request, const HttpError& refusal) {

@@ -14,7 +14,10 @@ Request request_of(const Connection& connection, const Message& message);
 Response dispatch(const Router& router, Request& request);
 
 /// Makes a reply that was promised.
-Response resume(const Router& router, const Request& request, const LaterReply& promised, bool client_left);
+Response resume(const Router& router, const Request& request, const LaterReply& promised);
+
+/// Does what is to be done when the client leaves that was promised a reply. Never throws.
+void leave(const Request& request, const LaterReply& promised);
 
 /// Answers a request that is refused before any route is asked.
 Response refuse(const Router& router, const Request& request, const HttpError& refusal);

@@ -27,7 +27,16 @@ HttpError request_timeout() {
       408,
       {"request-timeout", "Request timeout",
        "The request did not come in time: its head within 10 s, all of a short one within 60 s, a long body "
-       "within 300 s and not too slowly while others wait to send theirs."}};
+       "within 300 s and with 16 KiB a second while others wait to send theirs."}};
+}
+
+HttpError too_many_bodies() {
+  return {
+      503,
+      {"too-many-bodies", "Too many long bodies",
+       "Within 30 s nobody came to read this body, for others came before; bodies up to 32 KiB that are not "
+       "compressed do not wait behind them."},
+      {{"Retry-After", "10"}}};
 }
 
 HttpError body_too_large(std::size_t max_bytes) {

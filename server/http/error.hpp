@@ -40,6 +40,9 @@ HttpError not_found();
 /// 408
 HttpError request_timeout();
 
+/// 503: so many long bodies came before that this one was neither let in nor read in time.
+HttpError too_many_bodies();
+
 /// 413: more bytes than --max-body-bytes.
 HttpError body_too_large(std::size_t max_bytes);
 

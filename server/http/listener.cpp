@@ -34,23 +34,35 @@ std::size_t most_at_work() {
   return std::max<std::size_t>(8, 2 * std::thread::hardware_concurrency());
 }
 
-/// Long replies are written and compressed by as many as there are cores.
-std::size_t most_carriers_at_work() {
+/// What is read, written or compressed for long keeps a core busy.
+std::size_t cores() {
   return std::max(1u, std::thread::hardware_concurrency());
 }
 
 /// Readers of long bodies: one reads while others wait for the disk.
 constexpr std::size_t readers = 8;
 
+/// How long a body that has come waits to be read.
+constexpr std::chrono::seconds patience{30};
+
+bool is_compressed(const Message& message) {
+  return !message.body.empty() && !list_of(message, "Content-Encoding").empty();
+}
+
 /// Whether it may take long to read what the message brings, or to decode it.
 bool is_long_to_read(const Message& message) {
-  return message.body.size() > LobbyLimits{}.short_body ||
-         (!message.body.empty() && !list_of(message, "Content-Encoding").empty());
+  return message.body.size() > LobbyLimits{}.short_body || is_compressed(message);
+}
+
+/// What there is to read, about: JSON becomes so many times as long as it was sent.
+std::uint64_t bytes_to_read(const Message& message) {
+  constexpr std::uint64_t usual_ratio = 8;
+  return is_compressed(message) ? usual_ratio * message.body.size() : message.body.size();
 }
 
 LobbyLimits lobby_limits(const ListenerOptions& options) {
   LobbyLimits limits;
-  limits.long_bodies = std::max<std::size_t>(1, options.threads / 4);
+  limits.long_bodies = std::max(limits.long_bodies, 2 * options.max_body_bytes);
   return limits;
 }
 
@@ -118,10 +130,23 @@ struct Exchange {
   Request request;
 };
 
+/// For a client who need not be there any more.
+Task task_of(const Connection& connection, std::function<void()> work) {
+  return {std::move(work), network_of(connection.remote_address()), std::chrono::steady_clock::now()};
+}
+
+/// For a client who has to be there still, in the order in which bodies are read.
+Task reading_of(const std::shared_ptr<Connection>& connection, std::function<void()> work) {
+  Task task = task_of(*connection, std::move(work));
+  task.due = due(task.due, bytes_to_read(connection->reader().message()));
+  task.is_unwanted = [connection] { return connection->has_left(); };
+  return task;
+}
+
 }  // namespace
 
 /// Connections wait in the lobby until a request has come, in the waiting room until a reply can be made, and
-/// at the hatch until it is taken; a crew answers them between.
+/// at the hatch until it is taken; crews answer them between.
 class Listener::Impl {
  public:
   Impl(const ListenerOptions& options, const Router& router)
@@ -130,11 +155,12 @@ class Listener::Impl {
         stop_event_(eventfd(0, EFD_CLOEXEC)),
         router_(router),
         message_limits_(message_limits(options)),
-        slow_readers_(options.threads / 2),
-        crew_(options.threads, most_at_work()),
+        slow_readers_(options.long_replies / 2),
+        crew_(most_at_work(), most_at_work()),
         probes_crew_(2, 2),
+        takers_(most_at_work(), cores()),
         readers_(readers, 1),
-        carriers_(options.threads, most_carriers_at_work()),
+        carriers_(options.long_replies, cores()),
         hatch_({},
                [this](std::shared_ptr<Connection> connection, bool goes_on) {
                  connection->keep_place(lobby_.take_place());
@@ -146,10 +172,8 @@ class Listener::Impl {
               Request request = request_of(connection, connection.reader().message());
               return router_.refuses(request);
             },
-            [this](std::shared_ptr<Connection> connection, std::shared_ptr<void> body_place) {
-              Crew& crew = crew_for(connection->reader().message());
-              crew.enqueue([this, &crew, connection = std::move(connection),
-                            body_place = std::move(body_place)] { serve(crew, connection, body_place); });
+            [this](const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_room) {
+              take_in(connection, std::move(body_room));
             }) {}
 
   ~Impl() {
@@ -175,10 +199,7 @@ class Listener::Impl {
     if (accepting_.joinable()) accepting_.join();
     lobby_.stop();
     waiting_room_.stop();
-    crew_.shutdown();
-    probes_crew_.shutdown();
-    readers_.shutdown();
-    carriers_.shutdown();
+    for (Crew* crew : {&probes_crew_, &takers_, &readers_, &crew_, &carriers_}) crew->shutdown();
     hatch_.stop();
   }
 
@@ -215,33 +236,54 @@ class Listener::Impl {
         std::make_shared<Connection>(socket, stop_event_, message_limits_, slow_readers_, std::move(place)));
   }
 
-  Crew& crew_for(const Message& message) {
-    if (router_.is_for_probes(message.path)) return probes_crew_;
-    if (is_long_to_read(message)) return readers_;
-    return router_.is_long(message.path, read_query(message.query)) ? carriers_ : crew_;
+  /// What reads a body, or refuses a request, does not stand before those who only look.
+  void take_in(const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_room) {
+    const Message& message = connection->reader().message();
+    const auto came = std::chrono::steady_clock::now();
+    const auto serve_by = [&](Crew& crew) {
+      return [this, &crew, connection, body_room = std::move(body_room), came] {
+        serve(crew, connection, body_room, came);
+      };
+    };
+    if (!message.body.empty()) {
+      Crew& crew = is_long_to_read(message) ? readers_ : takers_;
+      crew.enqueue(reading_of(connection, serve_by(crew)));
+    } else {
+      Crew& crew = message.refusal ? takers_ : crew_for_reply(message);
+      crew.enqueue(task_of(*connection, serve_by(crew)));
+    }
   }
 
-  /// A long body has its place until it was read by the handler, or will not be.
-  void serve(const Crew& crew, const std::shared_ptr<Connection>& connection,
-             std::shared_ptr<void> body_place) {
+  Crew& crew_for_reply(const Message& message) {
+    if (router_.is_for_probes(message.path)) return probes_crew_;
+    return router_.is_long(message.method, message.path, read_query(message.query)) ? carriers_ : crew_;
+  }
+
+  /// A long body has its room until it was read by the handler, or will not be.
+  void serve(const Crew& crew, const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_room,
+             std::chrono::steady_clock::time_point came) {
     const auto exchange = std::make_shared<Exchange>();
     exchange->connection = connection;
     exchange->message = connection->reader().next();
     exchange->request = request_of(*connection, exchange->message);
-    exchange->request.read_body = [&message = exchange->message, &body_place](std::size_t max_bytes) {
+    exchange->request.client_left = [&connection] { return connection->has_left(); };
+    exchange->request.read_body = [&message = exchange->message, &body_room](std::size_t max_bytes) {
       if (message.body_left)
         throw bad_request("The body was not waited for, as the request was to be refused.");
       std::string body =
           decoded(std::exchange(message.body, {}), list_of(message, "Content-Encoding"), max_bytes);
-      body_place.reset();
+      body_room.reset();
       return body;
     };
-    const std::optional<HttpError>& refusal = exchange->message.refusal;
+    std::optional<HttpError>& refusal = exchange->message.refusal;
+    if (!exchange->message.body.empty() && std::chrono::steady_clock::now() > came + patience)
+      refusal = too_many_bodies();
     Response response =
         refusal ? refuse(router_, exchange->request, *refusal) : dispatch(router_, exchange->request);
     exchange->request.read_body = nullptr;
+    exchange->request.client_left = nullptr;
     exchange->message.body = {};
-    body_place.reset();
+    body_room.reset();
     if (response.later) return keep_waiting(exchange, response.later);
     reply(crew, exchange, std::move(response));
   }
@@ -249,14 +291,17 @@ class Listener::Impl {
   void keep_waiting(const std::shared_ptr<Exchange>& exchange,
                     const std::shared_ptr<const LaterReply>& promised) {
     exchange->connection->keep_place(nullptr);
-    waiting_room_.add(exchange->connection->socket(), promised->until, promised->subscribe,
-                      [this, exchange, promised](bool client_left) {
-                        crew_.enqueue([this, exchange, promised, client_left] {
-                          Response response = resume(router_, exchange->request, *promised, client_left);
-                          exchange->connection->keep_place(lobby_.take_place());
-                          reply(crew_, exchange, std::move(response));
-                        });
-                      });
+    waiting_room_.add(
+        exchange->connection->socket(), promised->until, promised->subscribe,
+        [this, exchange, promised](bool client_left) {
+          Crew& crew = client_left ? takers_ : crew_for_reply(exchange->message);
+          crew.enqueue(task_of(*exchange->connection, [this, &crew, exchange, promised, client_left] {
+            if (client_left) return leave(exchange->request, *promised);
+            Response response = resume(router_, exchange->request, *promised);
+            exchange->connection->keep_place(lobby_.take_place());
+            reply(crew, exchange, std::move(response));
+          }));
+        });
   }
 
   /// By the crew at hand, but what is long by those who carry such.
@@ -269,7 +314,8 @@ class Listener::Impl {
     }
     if (response.write_body && message.method != "HEAD") {
       if (&crew == &carriers_) return carry(*exchange, response);
-      return carriers_.enqueue([this, exchange, response = std::move(response)] { carry(*exchange, response); });
+      return carriers_.enqueue(task_of(
+          connection, [this, exchange, response = std::move(response)] { carry(*exchange, response); }));
     }
     connection.keep_place(nullptr);
     hatch_.deliver(exchange->connection, reply_text(message, response), goes_on(message, response));
@@ -292,8 +338,9 @@ class Listener::Impl {
   const Router& router_;
   const MessageLimits message_limits_;
   Places slow_readers_;
-  Crew crew_;
+  Crew crew_;         ///< for those who look, and are answered shortly
   Crew probes_crew_;  ///< so that probes are answered however much there is to do
+  Crew takers_;       ///< of short bodies, each of which may cost more than many looks
   Crew readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
   Crew carriers_;  ///< of long replies, so that short ones do not wait for them
   WaitingRoom waiting_room_;

@@ -17,8 +17,8 @@ class CannotListen : public std::runtime_error {
 
 struct ListenerOptions {
   std::string host = "127.0.0.1";
-  int port = 0;              ///< 0: a free one
-  std::size_t threads = 64;  ///< requests that are answered at once
+  int port = 0;                   ///< 0: a free one
+  std::size_t long_replies = 64;  ///< that are sent at the same time
   std::size_t max_body_bytes = 16 << 20;
 };
 

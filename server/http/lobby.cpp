@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "server/http/error.hpp"
+#include "server/http/turns.hpp"
 
 namespace signorini::server {
 namespace {
@@ -155,6 +156,7 @@ void Lobby::judge_body(Guests::iterator found) {
   if (guest.stay == Stay::arriving_with_long_body) return;
   guest.deadline = *guest.begun + limits_.body_arrival;
   if (is_long) {
+    guest.deadline = *guest.begun + limits_.let_in;
     guest.stay = Stay::queued_with_long_body;
     ++queued_;
     listen_to(guest);
@@ -165,11 +167,14 @@ void Lobby::judge_body(Guests::iterator found) {
   }
 }
 
+/// Its body, which has come, keeps the room that it takes.
 void Lobby::serve(Guests::iterator guest) {
   std::shared_ptr<Connection> connection = guest->second.connection;
-  std::shared_ptr<void> body_place = guest->second.body_place;
+  std::shared_ptr<void> body_room = std::move(guest->second.body_room);
   remove(guest);
-  serve_(std::move(connection), std::move(body_place));
+  if (std::exchange(body_room, nullptr))
+    body_room = long_bodies_.take(connection->reader().message().body.size());
+  serve_(std::move(connection), std::move(body_room));
 }
 
 void Lobby::refuse(Guests::iterator guest, const HttpError& reason) {
@@ -178,41 +183,55 @@ void Lobby::refuse(Guests::iterator guest, const HttpError& reason) {
 }
 
 void Lobby::let_in_long_bodies() {
-  while (queued_ > 0) {
-    std::shared_ptr<void> place = long_bodies_.take();
-    if (!place) return;
-    // The one who has waited longest.
-    Guest& next = std::ranges::min_element(guests_, {}, [](const Guests::value_type& guest) {
-                    const bool waits = guest.second.stay == Stay::queued_with_long_body;
-                    return std::pair(!waits, guest.second.since);
-                  })->second;
+  while (Guest* const guest = next_long_body()) {
+    MessageReader& reader = guest->connection->reader();
+    guest->body_room = long_bodies_.take(reader.longest_body());
+    if (!guest->body_room) return;
     --queued_;
-    next.stay = Stay::arriving_with_long_body;
-    next.body_place = std::move(place);
-    next.let_in = Clock::now();
-    next.deadline = next.let_in + limits_.long_arrival;
-    count(next);
-    listen_to(next);
-    MessageReader& reader = next.connection->reader();
+    guest->stay = Stay::arriving_with_long_body;
+    guest->let_in = Clock::now();
+    guest->deadline = guest->let_in + limits_.long_arrival;
+    count(*guest);
+    listen_to(*guest);
     if (!reader.expects_continue()) continue;
     reader.told_to_continue();
-    next.connection->send_at_once(go_on);
+    guest->connection->send_at_once(go_on);
   }
 }
 
-/// Whether others could have the place of its long body with more right.
+/// Of those for whom there is room, the one that is due first; null if there is none. Nobody takes more than
+/// half of the room that is left, so that there is always some for a shorter one.
+Lobby::Guest* Lobby::next_long_body() {
+  Guest* next = nullptr;
+  if (queued_ == 0) return next;
+  const std::size_t room = (long_bodies_.count() - std::min(long_bodies_.taken(), long_bodies_.count())) / 2;
+  const auto due_of = [](const Guest& guest) {
+    return due(*guest.begun, guest.connection->reader().longest_body());
+  };
+  for (auto& [socket, guest] : guests_) {
+    const bool fits =
+        guest.stay == Stay::queued_with_long_body && guest.connection->reader().longest_body() <= room;
+    if (fits && (next == nullptr || due_of(guest) < due_of(*next))) next = &guest;
+  }
+  return next;
+}
+
+/// Whether others could have the room of its long body with more right.
 bool Lobby::is_too_slow(const Guest& guest, Clock::time_point now) const {
   if (queued_ == 0 || guest.stay != Stay::arriving_with_long_body || now - guest.let_in < limits_.slow)
     return false;
-  const double seconds = std::chrono::duration<double>(now - guest.let_in).count();
-  return static_cast<double>(guest.connection->reader().message().body.size()) <
-         limits_.long_body_rate * seconds;
+  const MessageReader& reader = guest.connection->reader();
+  const double rate =
+      std::max(limits_.long_body_rate, static_cast<double>(reader.longest_body()) /
+                                           std::chrono::duration<double>(limits_.long_haste).count());
+  return static_cast<double>(reader.message().body.size()) <
+         rate * std::chrono::duration<double>(now - guest.let_in).count();
 }
 
-/// Counts what a guest has sent. Long bodies that come are counted by their places.
+/// Counts what a guest has sent. Long bodies that come are counted by their room.
 void Lobby::count(Guest& guest) {
   bytes_ -= guest.counted;
-  guest.counted = guest.body_place ? 0 : guest.connection->reader().size();
+  guest.counted = guest.body_room ? 0 : guest.connection->reader().size();
   bytes_ += guest.counted;
 }
 
@@ -231,7 +250,7 @@ void Lobby::dismiss_late() {
       if (guest.stay == Stay::leaving || !guest.begun) {
         remove(found);
       } else {
-        refuse(found, request_timeout());
+        refuse(found, guest.stay == Stay::queued_with_long_body ? too_many_bodies() : request_timeout());
       }
     }
     found = next;

@@ -17,23 +17,25 @@ struct LobbyLimits {
   std::size_t connections = 4096;  ///< that are open, and not given away
   std::size_t bytes = 16 << 20;    ///< of requests that are still coming, all together but for long bodies
   std::size_t short_body = 32 * 1024;
-  std::size_t long_bodies = 16;            ///< that come at the same time
-  double long_body_rate = 16 * 1024;       ///< bytes a second, while others wait for its place
+  std::size_t long_bodies = 128 << 20;     ///< bytes of those that come or wait to be read, all together
+  double long_body_rate = 16 * 1024;       ///< bytes a second, while others wait for its room,
+  std::chrono::seconds long_haste{60};     ///< and so many that it comes in this time
   std::chrono::seconds slow{5};            ///< after which the rate counts
   std::chrono::seconds idle{30};           ///< for the first bytes of a request
   std::chrono::seconds arrival{10};        ///< for its head, from then on
-  std::chrono::seconds body_arrival{60};   ///< for all of it, or for its long body to be let in,
+  std::chrono::seconds body_arrival{60};   ///< for all of it, if its body is short
+  std::chrono::seconds let_in{30};         ///< for a long one, until there is room for it,
   std::chrono::seconds long_arrival{300};  ///< and for all of that from then on
   std::chrono::seconds see_off{2};         ///< for a client to notice that it has been answered
 };
 
 /// Where connections wait, without a thread each, until a whole request has come: slow and silent clients
-/// cost some bytes and a descriptor. Of long bodies only a few come at a time; the others wait in their
-/// sockets.
+/// cost some bytes and a descriptor. Long bodies come as long as there is room for them; the others wait in
+/// their sockets.
 class Lobby {
  public:
-  /// Takes a connection whose request has come, with the place of its body if that is long.
-  using Serve = std::function<void(std::shared_ptr<Connection>, std::shared_ptr<void> body_place)>;
+  /// Takes a connection whose request has come, with the room that its body has if that is long.
+  using Serve = std::function<void(std::shared_ptr<Connection>, std::shared_ptr<void> body_room)>;
   /// Whether a request is refused by its head, so that its body need not come.
   using Refuses = std::function<bool(Connection&)>;
 
@@ -70,7 +72,7 @@ class Lobby {
     Clock::time_point deadline;
     std::optional<Clock::time_point> begun = {};  ///< when the first bytes of the request came
     bool head_judged = false;
-    std::shared_ptr<void> body_place = {};
+    std::shared_ptr<void> body_room = {};
     Clock::time_point let_in = {};  ///< with the long body
     std::size_t counted = 0;        ///< of `bytes_`
   };
@@ -84,6 +86,7 @@ class Lobby {
   void serve(Guests::iterator guest);
   void refuse(Guests::iterator guest, const HttpError& reason);
   void let_in_long_bodies();
+  Guest* next_long_body();
   bool is_too_slow(const Guest& guest, Clock::time_point now) const;
   void count(Guest& guest);
   void listen_to(const Guest& guest) const;
@@ -97,7 +100,7 @@ class Lobby {
   const int epoll_;
   const int wake_event_;
   Places places_;
-  Places long_bodies_;
+  Places long_bodies_;  ///< one a byte
 
   std::mutex mutex_;
   bool stopping_ = false;

@@ -234,6 +234,10 @@ std::uint64_t MessageReader::awaited() const {
   return parser_ ? parser_->content_length_remaining().value_or(0) : 0;
 }
 
+std::uint64_t MessageReader::longest_body() const {
+  return message_.chunked ? limits_.body : message_.body.size() + awaited();
+}
+
 bool MessageReader::expects_continue() const {
   return expects_continue_ && stage_ == Stage::body && message_.body.empty() && bytes_.empty();
 }

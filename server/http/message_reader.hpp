@@ -46,16 +46,18 @@ class MessageReader {
   const Message& message() const { return message_; }
   /// How many bytes of the body are still to come; 0 if the client does not say so before.
   std::uint64_t awaited() const;
+  /// What the body, of which the head is there, may come to.
+  std::uint64_t longest_body() const;
   /// Whether the client sends no body before it is told to go on.
   bool expects_continue() const;
   void told_to_continue() { expects_continue_ = false; }
 
   /// The rest of the body is not waited for: the message is whole without it, and the last one.
   void leave_body();
-
-  /// The whole request. Begins with the next one, which may be there already.
   /// The same of all that has not come: the message is refused.
   void refuse(const HttpError& reason);
+
+  /// The whole request. Begins with the next one, which may be there already.
   Message next();
 
   /// Bytes that are held.

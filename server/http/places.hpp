@@ -19,14 +19,15 @@ class Places {
   std::size_t count() const { return count_; }
   std::size_t taken() const { return taken_; }
 
-  /// A place until the last copy of it is gone; null if all are taken. The places must outlive it.
-  std::shared_ptr<void> take() {
-    if (taken_.fetch_add(1) >= count_) {
-      --taken_;
+  /// A place, or several, until the last copy of it is gone; null if there are not so many. The places must
+  /// outlive it.
+  std::shared_ptr<void> take(std::size_t number = 1) {
+    if (taken_.fetch_add(number) + number > count_) {
+      taken_ -= number;
       return nullptr;
     }
-    return {this, [this](void*) {
-              --taken_;
+    return {this, [this, number](void*) {
+              taken_ -= number;
               if (on_leave_) on_leave_();
             }};
   }

@@ -36,6 +36,7 @@ struct Request {
   Query query;
   Headers headers;
   BodyReader read_body;
+  std::function<bool()> client_left;  ///< whether nobody waits for the reply any more
   std::chrono::steady_clock::time_point begun;
   bool accepts_gzip = false;
   std::string reply_type;  ///< the media type that the client prefers, of those of the route; by the router

@@ -41,13 +41,16 @@ struct Response {
 
 /// A reply that is made when something has happened, and for which no thread waits.
 struct LaterReply {
+  std::string job;                              ///< id of the job that it is about, for the log
   std::chrono::steady_clock::time_point until;  ///< by when it is made in any case
   std::shared_ptr<void> place;                  ///< of those who may wait
   /// Arranges that `ready` is called, by any thread, as soon as the reply can be made, while what is returned
   /// lives.
   std::function<std::shared_ptr<void>(std::function<void()> ready)> subscribe;
-  /// Makes the reply; the request is still there. A client that has left may have wanted something else.
-  std::function<Response(bool client_left)> make;
+  /// Makes the reply; the request is still there.
+  std::function<Response()> make;
+  /// Does instead what is to be done when the client has left.
+  std::function<void()> leave;
 };
 
 }  // namespace signorini::server

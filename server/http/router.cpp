@@ -82,9 +82,11 @@ bool Router::is_for_probes(std::string_view path) const {
   });
 }
 
-bool Router::is_long(std::string_view path, const Query& query) const {
+bool Router::is_long(std::string_view method, std::string_view path, const Query& query) const {
+  if (method == "HEAD") method = "GET";
   return std::ranges::any_of(routes_, [&](const Route& route) {
-    return route.is_long != nullptr && match(route.pattern, path) && route.is_long(query);
+    return route.is_long != nullptr && route.method == method && match(route.pattern, path) &&
+           route.is_long(query);
   });
 }
 
@@ -134,9 +136,9 @@ Response Router::route(Request& request) const {
     return Cors::answer_preflight(found.methods);
   const Route& route = require(request, found);
   if (found.audience() == Audience::clients) access_.count(request.identity);
+  if (request.method == "OPTIONS") return options(found.methods);
   const SenderFields sender(request);
   return route.handler(request);
-  if (request.method == "OPTIONS") return options(found.methods);
 }
 
 }  // namespace signorini::server

@@ -50,7 +50,7 @@ class Router {
   /// Whether a path is for probes.
   bool is_for_probes(std::string_view path) const;
   /// Whether the reply may be long.
-  bool is_long(std::string_view path, const Query& query) const;
+  bool is_long(std::string_view method, std::string_view path, const Query& query) const;
 
   /// Tells browsers which pages may read the reply.
   void mark(const Request& request, Response& response) const { access_.cors.mark(request, response); }

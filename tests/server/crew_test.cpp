@@ -13,7 +13,7 @@ TEST(Crew, DoesEverythingBeforeItEnds) {
   std::atomic<int> done = 0;
   {
     Crew crew(4, 2);
-    for (int i = 0; i < 1000; ++i) crew.enqueue([&] { ++done; });
+    for (int i = 0; i < 1000; ++i) crew.enqueue({[&] { ++done; }});
   }
   EXPECT_EQ(done, 1000);
 }
@@ -24,12 +24,12 @@ TEST(Crew, HasOnlyAFewAtWork) {
   {
     Crew crew(8, 2);
     for (int i = 0; i < 50; ++i) {
-      crew.enqueue([&] {
+      crew.enqueue({[&] {
         const int now = ++at_work;
         for (int before = most; before < now && !most.compare_exchange_weak(before, now);) continue;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         --at_work;
-      });
+      }});
     }
   }
   EXPECT_LE(most, 2);
@@ -42,16 +42,32 @@ TEST(Crew, LetsOthersWorkMeanwhile) {
   {
     Crew crew(6, 1);
     for (int i = 0; i < 6; ++i) {
-      crew.enqueue([&] {
+      crew.enqueue({[&] {
         {
           const Crew::Rest rest;
           all.arrive_and_wait();
         }
         ++done;
-      });
+      }});
     }
   }
   EXPECT_EQ(done, 6);
+}
+
+/// And what they hold is given back while others wait, whoever's turn is next.
+TEST(Crew, DoesNothingForThoseWhoHaveLeft) {
+  std::latch may_go_on(1);
+  std::atomic<int> done = 0;
+  std::atomic<bool> left = false;
+  const auto held = std::make_shared<int>();
+  Crew crew(1, 1);
+  crew.enqueue({[&] { may_go_on.wait(); }});
+  for (int i = 0; i < 100; ++i) crew.enqueue({[&, held] { ++done; }, "a", {}, [&] { return left.load(); }});
+  left = true;
+  may_go_on.count_down();
+  crew.shutdown();
+  EXPECT_EQ(done, 0);
+  EXPECT_EQ(held.use_count(), 1);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "api/gzip.hpp"
 #include "child_process.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"
@@ -119,26 +120,79 @@ TEST_F(Guests, WhoseLongBodiesStandInTheWay) {
   EXPECT_LT(Clock::now() - begin, 30s);
 }
 
-/// 100 of them once made the list take five seconds: their replies, which they did not take, held the
-/// threads.
+/// What they do not take holds no thread, and whoever reads after all gets every reply.
 TEST_F(Guests, WhoAskAgainAndAgainAndReadNothing) {
+  const std::string line = "GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n";
   std::string requests;
-  for (int i = 0; i < 150; ++i) requests += "GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n";
-  std::vector<RawClient> guests;
-  for (int i = 0; i < 200; ++i) {
-    guests.emplace_back(port());
-    guests.back().turn_deaf();
-    guests.back().send(requests);
-  }
+  for (int i = 0; i < 149; ++i) requests += line + "\r\n";
+  requests += line + "Connection: close\r\n\r\n";
+  const std::vector<RawClient> guests = [&] {
+    std::vector<RawClient> deaf;
+    for (int i = 0; i < 200; ++i) {
+      deaf.emplace_back(port());
+      deaf.back().turn_deaf();
+      deaf.back().send(requests);
+    }
+    return deaf;
+  }();
+  std::vector<RawClient> reader;
+  reader.emplace_back(port());
+  reader[0].send(requests);
   for (int i = 0; i < 8; ++i) {
     expect_service();
     std::this_thread::sleep_for(250ms);
   }
-  // Whoever reads after all gets every reply.
-  const auto replies_of = [](const RawClient& guest) { return read_replies(guest.heard(), false).size(); };
-  std::vector<RawClient> reader;
-  reader.push_back(std::move(guests.back()));
-  EXPECT_TRUE(listen_until(reader, 20s * patience, [&] { return replies_of(reader[0]) == 150; }));
+  EXPECT_TRUE(listen_until(reader, 20s * patience, [&] { return reader[0].closed(); }));
+  EXPECT_EQ(read_replies(reader[0].heard(), false).size(), 150u);
+}
+
+/// A document of some megabytes that takes some tenths of a second to read, in few bytes.
+std::string costly_body() {
+  std::string text = R"({"domain": {"type": "mesh", "points": [[0, 0])";
+  while (text.size() < 6 * megabyte) text += ", [0, 0]";
+  text += R"(], "triangles": [[0, 1, 2]], "boundary": {}}})";
+  std::string bytes;
+  const api::Sink append = [&](std::string_view piece) {
+    bytes += piece;
+    return true;
+  };
+  api::Gzip gzip(append);
+  gzip.put(text);
+  gzip.finish();
+  return bytes;
+}
+
+class Readings : public Guests {
+ protected:
+  std::vector<RawClient> crowd_with_costly_bodies() {
+    const std::string body = costly_body();
+    return crowd(
+        200, post_head("Content-Encoding: gzip\r\nContent-Length: " + std::to_string(body.size())) + body);
+  }
+
+  /// Of a body that is too long to be read beside others.
+  void expect_reading() {
+    const auto begin = Clock::now();
+    httplib::Client client("127.0.0.1", port());
+    client.set_read_timeout(100);
+    const auto reply = client.Post("/v1/validate", "{}" + std::string(40'000, ' '), "application/json");
+    ASSERT_TRUE(reply) << httplib::to_string(reply.error());
+    EXPECT_EQ(reply->status, 422);
+    EXPECT_LT(Clock::now() - begin, 4s * patience);
+  }
+};
+
+/// What 200 had left behind was read for a minute, and so long did others wait.
+TEST_F(Readings, AreNotBegunForThoseWhoHaveLeft) {
+  crowd_with_costly_bodies();
+  expect_reading();
+  const int idle = figures_of(daemon_.process().id()).descriptors;
+  EXPECT_LT(idle, 50);
+}
+
+TEST_F(Readings, AreThoseOfShorterBodiesFirst) {
+  const std::vector<RawClient> guests = crowd_with_costly_bodies();
+  for (int i = 0; i < 3; ++i) expect_reading();
 }
 
 class Waiters : public ServiceTest {

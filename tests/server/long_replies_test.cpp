@@ -105,7 +105,7 @@ TEST_F(LongReplies, ToManyShareOneResult) {
   RecordProperty("memory_mb", static_cast<int>((peak - std::min(peak, before)) / megabyte));
   if (!sanitized) {
     EXPECT_LT(peak,
-              before + 20 * megabyte + std::filesystem::file_size(directory_.path() + "/data/jobs.sqlite"));
+              before + 24 * megabyte + std::filesystem::file_size(directory_.path() + "/data/jobs.sqlite"));
   }
 }
 

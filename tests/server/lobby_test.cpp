@@ -1,0 +1,124 @@
+#include "server/http/lobby.hpp"
+
+#include <condition_variable>
+#include <mutex>
+
+#include <gtest/gtest.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A lobby without a service behind it, whose guests are soon late.
+class InTheLobby : public testing::Test {
+ protected:
+  ~InTheLobby() override {
+    lobby_.stop();
+    for (const int socket : sockets_) ::close(socket);
+    ::close(stop_event_);
+  }
+
+  static LobbyLimits limits() {
+    LobbyLimits little;
+    little.long_bodies = 200'000;
+    little.arrival = little.let_in = 1s;
+    return little;
+  }
+
+  /// The client's end of a new connection, on which this was said.
+  int enter(const std::string& said) {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
+    sockets_.push_back(ends[0]);
+    lobby_.admit(std::make_shared<Connection>(ends[1], stop_event_, MessageLimits(), slow_readers_, nullptr));
+    ::send(ends[0], said.data(), said.size(), 0);
+    return ends[0];
+  }
+
+  int enter_with_body(std::size_t declared) {
+    return enter("POST /v1/validate HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
+                 std::to_string(declared) + "\r\n\r\n");
+  }
+
+  /// The next message that leaves the lobby; one without a method if none does for some seconds.
+  Message next() {
+    std::unique_lock lock(mutex_);
+    if (!came_.wait_for(lock, 10s, [&] { return !messages_.empty(); })) return {};
+    Message message = std::move(messages_.front());
+    messages_.erase(messages_.begin());
+    return message;
+  }
+
+  static int status_of(const Message& message) { return message.refusal ? message.refusal->status : 0; }
+
+  const int stop_event_ = eventfd(0, EFD_CLOEXEC);
+  Places slow_readers_{1};
+  std::vector<int> sockets_;
+  std::mutex mutex_;
+  std::condition_variable came_;
+  std::vector<Message> messages_;
+  std::vector<std::shared_ptr<void>> rooms_;
+  Lobby lobby_{limits(), [](Connection&) { return false; },
+               [this](const std::shared_ptr<Connection>& connection, std::shared_ptr<void> room) {
+                 const std::lock_guard lock(mutex_);
+                 messages_.push_back(connection->reader().next());
+                 rooms_.push_back(std::move(room));
+                 came_.notify_one();
+               }};
+};
+
+TEST_F(InTheLobby, ARequestThatComesTooLateIsRefused) {
+  enter("GET / HTTP/1.1\r\nHost: l");
+  EXPECT_EQ(status_of(next()), 408);
+}
+
+/// RFC 9110, 9.3.2.
+TEST_F(InTheLobby, AHeadThatComesTooLateIsRefusedAsHead) {
+  enter("HEAD / HTTP/1.1\r\nHost: l");
+  const Message message = next();
+  EXPECT_EQ(status_of(message), 408);
+  EXPECT_EQ(message.method, "HEAD");
+}
+
+TEST_F(InTheLobby, ABodyForWhichThereIsNoRoomIsNotCalledLate) {
+  enter_with_body(90'000);
+  enter_with_body(90'000);
+  EXPECT_EQ(status_of(next()), 503);
+}
+
+/// Half of what is left is for those who want less.
+TEST_F(InTheLobby, ThereIsRoomForAShorterBody) {
+  enter_with_body(90'000);
+  enter_with_body(90'000);
+  const int socket = enter_with_body(40'000);
+  const std::string body(40'000, ' ');
+  ::send(socket, body.data(), body.size(), 0);
+  const Message message = next();
+  EXPECT_EQ(status_of(message), 0);
+  EXPECT_EQ(message.body, body);
+}
+
+/// What was kept for the longest body that could come is given back when a shorter one has come.
+TEST_F(InTheLobby, ABodyThatHasComeKeepsTheRoomThatItTakes) {
+  const std::string body(40'000, ' ');
+  const int first = enter_with_body(body.size());
+  ::send(first, body.data(), body.size(), 0);
+  EXPECT_EQ(next().body.size(), body.size());
+  const int second = enter_with_body(body.size());
+  ::send(second, body.data(), body.size(), 0);
+  EXPECT_EQ(next().body.size(), body.size());
+  enter_with_body(70'000);
+  EXPECT_EQ(status_of(next()), 503);
+  rooms_.clear();
+  const std::string longer(70'000, ' ');
+  const int third = enter_with_body(longer.size());
+  ::send(third, longer.data(), longer.size(), 0);
+  EXPECT_EQ(next().body.size(), longer.size());
+}
+
+}  // namespace
+}  // namespace signorini::server
