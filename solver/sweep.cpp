@@ -100,7 +100,7 @@ class Sweep::Reference {
     const auto grown = growth(space(), after, condensed_.discretization().spaces().order);
     if (!grown || is_far(after, displacement_)) return std::nullopt;
     const Eigen::VectorXd shift = of_unknowns(space(), *grown);
-    contact_.c = condensed_.contact().c + contact_.s * shift;
+    contact_.c = condensed_.contact().c + symmetric_product(contact_.s, shift, progress);
     const ContactResult found =
         find_clearance(contact_, settings.method, progress, [this](const auto&) -> BodyState {
           return {mean_stress_, {}};
@@ -134,18 +134,19 @@ class Sweep::Reference {
 
   /// `change` is that of λ − s.
   SweepEntry entry_for(const ClearanceSpace& after, const ContactResult& found, const Eigen::VectorXd& change,
-                       const Settings& settings, const Progress& progress) const {
-    const Eigen::VectorXd pressure = contact_pressure(after, forces_on_rows(after, found.clearance, change));
+                       const Settings& settings, Progress& progress) const {
+    const Eigen::VectorXd forces = contact_.force(found.clearance, progress);
+    const Eigen::VectorXd pressure = contact_pressure(after, forces_on_rows(after, forces, change));
     const Mesh& mesh = condensed_.discretization().mesh;
     SweepEntry entry;
-    const Residuals left = contact_residuals_of(found.clearance);
+    const Residuals left = contact_residuals_of(found.clearance, forces);
     entry.penetration = left.penetration;
     entry.tension = left.tension;
     entry.complementarity = left.complementarity;
     entry.outcome = judged(found.outcome, left, settings);
     entry.iterations = progress.iterations();
     entry.advice = advice(settings, entry.outcome, entry.iterations);
-    entry.energy = energy_after(change);
+    entry.energy = energy_after(change, progress);
     entry.contact = contact_parts(after, mesh, after.clearance(found.clearance), pressure);
     entry.sums = sum_up(entry.contact);
     for (std::size_t part = 0; part < mesh.boundary.size(); ++part) {
@@ -156,9 +157,8 @@ class Sweep::Reference {
     return entry;
   }
 
-  Eigen::VectorXd forces_on_rows(const ClearanceSpace& after, const Eigen::VectorXd& clearance,
+  Eigen::VectorXd forces_on_rows(const ClearanceSpace& after, const Eigen::VectorXd& on_unknowns,
                                  const Eigen::VectorXd& change) const {
-    const Eigen::VectorXd on_unknowns = contact_.s * clearance - contact_.c;
     Eigen::VectorXd forces(after.rows.size());
     for (std::size_t i = 0; i < after.rows.size(); ++i)
       forces[i] = after.rows[i].unknown >= 0 ? on_unknowns[after.rows[i].unknown] : held_.at(i).after(change);
@@ -166,14 +166,14 @@ class Sweep::Reference {
   }
 
   /// ½ μᵀ S μ − cᵀ μ for μ = λ − s, as far as it differs from that of the reference.
-  double energy_after(const Eigen::VectorXd& change) const {
+  double energy_after(const Eigen::VectorXd& change, Progress& progress) const {
     const Eigen::VectorXd between = clearance_ + 0.5 * change;
-    return entry_.energy + change.dot(contact_.s * between - condensed_.contact().c);
+    return entry_.energy + change.dot(condensed_.contact().force(between, progress));
   }
 
-  Residuals contact_residuals_of(const Eigen::VectorXd& clearance) const {
+  Residuals contact_residuals_of(const Eigen::VectorXd& clearance, const Eigen::VectorXd& forces) const {
     const ContactResiduals left =
-        contact_residuals(clearance, contact_.pressure(clearance), contact_.weight, mean_stress_);
+        contact_residuals(clearance, forces.cwiseQuotient(contact_.weight), contact_.weight, mean_stress_);
     Residuals residuals;
     residuals.penetration = left.penetration;
     residuals.tension = left.tension;

@@ -6,6 +6,7 @@
 #include <Spectra/SymEigsSolver.h>
 
 #include "contact/multilevel_scaling.hpp"
+#include "system/pace.hpp"
 
 namespace signorini {
 namespace {
@@ -27,9 +28,17 @@ class ScaledComplement {
   void perform_op(const double* in, double* out) const {
     progress_.check();
     const Eigen::VectorXd scaled = root_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-    Eigen::Map<Eigen::VectorXd>(out, rows()) = root_.cwiseProduct(s_ * scaled);
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = root_.cwiseProduct(symmetric_product(s_, scaled, progress_));
   }
-  double largest_row_sum() const { return (root_.cwiseProduct(s_.cwiseAbs() * root_)).maxCoeff(); }
+  double largest_row_sum() const {
+    double largest = 0;
+    Pace pace(progress_);
+    for (Eigen::Index i = 0; i < rows(); ++i) {
+      largest = std::max(largest, root_[i] * s_.col(i).cwiseAbs().dot(root_));
+      pace.add(static_cast<std::size_t>(rows()));
+    }
+    return largest;
+  }
 
  private:
   const Eigen::MatrixXd& s_;
@@ -56,6 +65,7 @@ class Iterate {
  public:
   Iterate(const ContactComplement& contact, const Eigen::VectorXd& start, Progress& progress)
       : contact_(contact),
+        progress_(progress),
         diagonal_(contact.s.diagonal()),
         step_(kPart * 2 / largest_eigenvalue(contact, progress)),
         mean_stress_(kSmallPart * contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>()),
@@ -110,10 +120,7 @@ class Iterate {
   /// Of the longest step with which the expansion still never raises the energy.
   static constexpr double kPart = 0.95;
 
-  void evaluate_gradient() {
-    g_.noalias() = contact_.s * lambda_;
-    g_ += lost_ - contact_.c;
-  }
+  void evaluate_gradient() { g_ = contact_.force(lambda_, progress_) + lost_; }
 
   /// Whether what could still be gained on the open part outweighs what closed unknowns gain by opening, both
   /// in the norm of the diagonal.
@@ -187,7 +194,7 @@ class Iterate {
   }
 
   void multiply_direction() {
-    s_direction_.noalias() = contact_.s * direction_;
+    s_direction_ = symmetric_product(contact_.s, direction_, progress_);
     curvature_ = direction_.dot(s_direction_);
   }
 
@@ -216,6 +223,7 @@ class Iterate {
       "the contact problem is singular: contact holds the body only just";
 
   const ContactComplement& contact_;
+  Progress& progress_;
   const Eigen::VectorXd diagonal_;
   const double step_;
   double mean_stress_;
@@ -235,14 +243,19 @@ ContactResult accelerated_uzawa(const ContactComplement& contact, const Accelera
   Iterate iterate(contact, start, progress);
   const auto converged = [&] { return iterate.meets(settings.tolerance); };
   int looks = 0;
-  while (progress.iterations() < settings.max_iterations) {
-    const bool in_time = progress.record(iterate.step());
-    if (converged()) {
-      iterate.refresh();
-      if (converged() && looks++ < kMostLooks) iterate.compare_with(body(iterate.clearance()));
-      if (converged()) return {iterate.clearance(), Outcome::converged};
+  try {
+    while (progress.iterations() < settings.max_iterations) {
+      const bool in_time = progress.record(iterate.step());
+      if (converged()) {
+        iterate.refresh();
+        if (converged() && looks++ < kMostLooks) iterate.compare_with(body(iterate.clearance()));
+        if (converged()) return {iterate.clearance(), Outcome::converged};
+      }
+      if (!in_time) return {iterate.clearance(), Outcome::time_limit};
     }
-    if (!in_time) return {iterate.clearance(), Outcome::time_limit};
+  } catch (const TimeUp&) {
+    if (progress.iterations() == 0) throw;
+    return {iterate.clearance(), Outcome::time_limit};
   }
   return {iterate.clearance(), Outcome::iteration_limit};
 }

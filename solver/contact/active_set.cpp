@@ -39,7 +39,7 @@ std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, 
   double largest = 0;
   for (const int i : open) largest = std::max(largest, contact.s(i, i));
   if (!factor.is_positive_definite() || factor.smallest_pivot() < 10 * kRounding * largest) return std::nullopt;
-  const Eigen::VectorXd found = factor.solve(contact.c(open));
+  const Eigen::VectorXd found = factor.solve(contact.c(open), progress);
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact.size());
   for (std::size_t k = 0; k < open.size(); ++k) clearance[open[k]] = found[static_cast<Eigen::Index>(k)];
   return clearance;
@@ -50,7 +50,8 @@ std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, 
 std::optional<int> first_to_close(const ContactComplement& contact, const Closed& closed,
                                   const Eigen::VectorXd& clearance, int opening, Progress& progress) {
   const std::vector<int> open = open_indices(closed);
-  const Eigen::VectorXd motion = -DenseCholesky(contact.s, open, progress).solve(contact.s(open, opening));
+  const Eigen::VectorXd motion =
+      -DenseCholesky(contact.s, open, progress).solve(contact.s(open, opening), progress);
   std::optional<int> first;
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < open.size(); ++k) {
@@ -96,7 +97,7 @@ std::vector<int> violations(const ContactComplement& contact, const Eigen::Vecto
 Iteration record_of(const ContactComplement& contact, const Eigen::VectorXd& last,
                     const Eigen::VectorXd& clearance, const Eigen::VectorXd& force, const Closed& closed) {
   const Eigen::VectorXd pressure = force.cwiseQuotient(contact.weight);
-  const double scale = contact.pressure(Eigen::VectorXd::Zero(contact.size())).lpNorm<Eigen::Infinity>();
+  const double scale = contact.c.cwiseQuotient(contact.weight).lpNorm<Eigen::Infinity>();
   const ContactResiduals residuals = contact_residuals(clearance, pressure, contact.weight, scale);
   Iteration iteration;
   iteration.clearance_change = relative_change(last, clearance);
@@ -117,7 +118,7 @@ ContactResult active_set(const ContactComplement& contact, const ActiveSet& sett
     clearance = *found;
   else
     closed.assign(closed.size(), true);
-  Eigen::VectorXd force = contact.s * clearance - contact.c;
+  Eigen::VectorXd force = contact.force(clearance, progress);
   std::size_t fewest = closed.size() + 1;
   int patience = kPatience;
   for (std::vector<int> wrong = violations(contact, clearance, force, closed);;
@@ -134,8 +135,13 @@ ContactResult active_set(const ContactComplement& contact, const ActiveSet& sett
       wrong.resize(1);
     }
     const Eigen::VectorXd last = clearance;
-    clearance = exchange(contact, wrong, last, closed, progress);
-    force = contact.s * clearance - contact.c;
+    try {
+      clearance = exchange(contact, wrong, last, closed, progress);
+      force = contact.force(clearance, progress);
+    } catch (const TimeUp&) {
+      if (progress.iterations() == 0) throw;
+      return {last.cwiseMax(0), Outcome::time_limit};
+    }
     if (!progress.record(record_of(contact, last, clearance, force, closed)))
       return {clearance.cwiseMax(0), Outcome::time_limit};
   }

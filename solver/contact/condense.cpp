@@ -13,7 +13,8 @@ Eigen::VectorXd CondensedContact::correction(const Eigen::VectorXd& imbalance, c
                                              Progress& progress) {
   const Cholesky::Condensed condensed = factor_.condense(imbalance, workspace_, progress);
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact_.size());
-  const Eigen::VectorXd change = DenseCholesky(contact_.s, open, progress).solve(condensed.trailing(open));
+  const Eigen::VectorXd change =
+      DenseCholesky(contact_.s, open, progress).solve(condensed.trailing(open), progress);
   for (std::size_t k = 0; k < open.size(); ++k) clearance[open[k]] = change[static_cast<Eigen::Index>(k)];
   return factor_.expand(condensed, clearance, workspace_, progress);
 }

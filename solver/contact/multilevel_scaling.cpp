@@ -41,7 +41,11 @@ Eigen::MatrixXd coarsen(const Eigen::MatrixXd& s, const std::vector<int>& open,
                         const std::vector<int>& aggregate, Progress& progress) {
   Pace pace(progress);
   const int n = count_of(aggregate);
-  Eigen::MatrixXd coarse = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd coarse(n, n);
+  for (int j = 0; j < n; ++j) {
+    pace.add(static_cast<std::size_t>(n));
+    coarse.col(j).setZero();
+  }
   for (const int j : open) {
     pace.add(open.size());
     for (const int i : open) coarse(aggregate[i], aggregate[j]) += s(i, j);

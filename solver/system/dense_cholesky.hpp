@@ -20,8 +20,8 @@ class DenseCholesky {
   double smallest_pivot() const;  ///< the square of the factor's smallest diagonal entry; infinite if it is empty
   double largest_pivot() const;   ///< likewise; 0 if it is empty
 
-  /// The unknowns for one right side, both in the order of the chosen ones.
-  Eigen::VectorXd solve(Eigen::VectorXd b) const;
+  /// The unknowns for one right side, both in the order of the chosen ones. Throws what Progress throws.
+  Eigen::VectorXd solve(Eigen::VectorXd b, Progress& progress) const;
 
  private:
   Eigen::MatrixXd factor_;  ///< lower triangle

@@ -18,7 +18,7 @@ namespace signorini {
 template <typename AfterBlock>
 bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Progress& progress,
                          const AfterBlock& after_block) {
-  constexpr int kBlock = 256;
+  constexpr int kBlock = 256, kStrip = 1024;
   const auto at = [&](int row, int column) { return matrix + static_cast<std::ptrdiff_t>(column) * distance + row; };
   for (int begin = 0; begin < pivots; begin += kBlock) {
     progress.check();
@@ -26,9 +26,11 @@ bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Pro
     int info = 0;
     dpotrf_("L", &width, at(begin, begin), &distance, &info);
     if (info != 0) return false;
-    if (end < rows)
-      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, rows - end, width, 1,
-                  at(begin, begin), distance, at(end, begin), distance);
+    for (int top = end; top < rows; top += kStrip) {
+      progress.check();
+      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, std::min(kStrip, rows - top),
+                  width, 1, at(begin, begin), distance, at(top, begin), distance);
+    }
     if (end < pivots)
       subtract_square(rows - end, pivots - end, width, at(end, begin), distance, at(end, end), distance, progress);
     after_block(begin, width);

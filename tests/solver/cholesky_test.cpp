@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 #include <random>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "system/cholesky.hpp"
+#include "system/dense_cholesky.hpp"
+#include "system/symmetric_product.hpp"
 
 namespace signorini {
 namespace {
@@ -191,6 +194,40 @@ TEST(Cholesky, ALongSolveEndsWhenTheObserverDoes) {
   Cholesky::Workspace workspace;
   Eigen::VectorXd x = Eigen::VectorXd::Ones(n);
   EXPECT_THROW(factor.solve(x, workspace, progress), Cancelled);
+}
+
+TEST(DenseCholesky, SolvesWithSomeRowsOfAMatrix) {
+  for (const int n : {1, 7, 300}) {
+    const Eigen::MatrixXd a = Eigen::MatrixXd::Random(n, n);
+    const Eigen::MatrixXd s = a * a.transpose() + n * Eigen::MatrixXd::Identity(n, n);
+    std::vector<int> chosen;
+    for (int i = n - 1; i >= 0; i -= 2) chosen.push_back(i);
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(static_cast<Eigen::Index>(chosen.size()));
+    Observer indifferent;
+    Progress progress(indifferent, {});
+    const Eigen::VectorXd x = DenseCholesky(s, chosen, progress).solve(b, progress);
+    EXPECT_LT((s(chosen, chosen) * x - b).norm(), 1e-12 * b.norm()) << n;
+    const Eigen::VectorXd all = Eigen::VectorXd::Random(n);
+    EXPECT_LT((symmetric_product(s, all, progress) - s * all).norm(), 1e-13 * (s * all).norm()) << n;
+  }
+}
+
+TEST(DenseCholesky, LongWorkEndsWhenTheObserverDoes) {
+  constexpr int n = 900;
+  const Eigen::MatrixXd s = Eigen::MatrixXd::Ones(n, n) + Eigen::MatrixXd::Identity(n, n);
+  const Eigen::VectorXd x = Eigen::VectorXd::Ones(n);
+  std::vector<int> all(n);
+  std::iota(all.begin(), all.end(), 0);
+  Observer indifferent;
+  Progress goes_on(indifferent, {});
+  const DenseCholesky factor(s, all, goes_on);
+  struct Unwilling : Observer {
+    bool keep_going() override { return false; }
+  } unwilling;
+  Progress ends(unwilling, {});
+  EXPECT_THROW(DenseCholesky(s, all, ends), Cancelled);
+  EXPECT_THROW(factor.solve(x, ends), Cancelled);
+  EXPECT_THROW(symmetric_product(s, x, ends), Cancelled);
 }
 
 }  // namespace

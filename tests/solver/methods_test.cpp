@@ -1,6 +1,8 @@
 // The three iterations against each other, against units, and at their limits.
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "contact/accelerated_uzawa.hpp"
 #include "contact/active_set.hpp"
 #include "norms.hpp"
@@ -39,10 +41,8 @@ void expect_same_fields(const Solution& a, const Solution& b, double tolerance) 
 
 /// Opening both unknowns gives λ = (0.5, −2.5e-4): the second must close again, however little it violates.
 TEST(ActiveSetMethod, ClosesWhatIsViolatedALittle) {
-  ContactComplement contact;
-  contact.s = Eigen::Matrix2d{{2, 1}, {1, 2}};
-  contact.c = Eigen::Vector2d(1, 0.499625);
-  contact.weight = Eigen::Vector2d(1, 1);
+  const Eigen::MatrixXd s{{2, 1}, {1, 2}};
+  const ContactComplement contact{s, Eigen::Vector2d(1, 0.499625), Eigen::Vector2d(1, 1)};
   Observer observer;
   Progress progress(observer, std::nullopt);
   const ContactResult result = active_set(contact, {}, progress);
@@ -63,10 +63,9 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
     for (const int rank : {n, std::max(1, n - 1)}) {
       const Eigen::MatrixXd a = random(rank, n);
       const Eigen::VectorXd x = random(n, 1).cwiseMax(0), p = random(n, 1).cwiseAbs();
-      ContactComplement contact;
-      contact.s = a.transpose() * a;
-      contact.weight = random(n, 1).cwiseAbs();
-      contact.c = contact.s * x - (x.array() > 0).select(0, p.cwiseProduct(contact.weight));
+      const Eigen::MatrixXd s = a.transpose() * a;
+      const Eigen::VectorXd weight = random(n, 1).cwiseAbs();
+      const ContactComplement contact{s, s * x - (x.array() > 0).select(0, p.cwiseProduct(weight)), weight};
       for (const bool started : {false, true}) {
         Observer observer;
         Progress progress(observer, std::nullopt);
@@ -80,8 +79,8 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
             start);
         ASSERT_EQ(result.outcome, Outcome::converged) << n << ' ' << rank;
         EXPECT_GE(result.clearance.minCoeff(), 0);
-        const double scale = (contact.s * x).norm() + contact.c.norm();
-        EXPECT_LT((contact.s * (result.clearance - x)).norm(), 1e-8 * scale) << n << ' ' << rank;
+        const double scale = (s * x).norm() + contact.c.norm();
+        EXPECT_LT((s * (result.clearance - x)).norm(), 1e-8 * scale) << n << ' ' << rank;
       }
     }
   }
@@ -185,6 +184,43 @@ TEST(Limits, TimeLimitKeepsTheLastIterate) {
       solve(problems::paper(Scheme::conforming, 8), {PaperUzawa{1e-9, 1, 1, 1e-14, 1000000}, 0.05});
   EXPECT_EQ(solution.summary.outcome, Outcome::time_limit);
   EXPECT_GT(solution.summary.iterations, 0);
+}
+
+/// Lets a second pass the first time that a method looks at its observer after an iteration.
+class Dawdler : public Observer {
+ public:
+  void iterated(const Iteration&) override { asked_ = 0; }
+  bool keep_going() override {
+    const bool in_the_next_iteration = ++asked_ == 2;
+    if (in_the_next_iteration) std::this_thread::sleep_for(std::chrono::seconds(1));
+    return true;
+  }
+
+ private:
+  int asked_ = 2;
+};
+
+TEST(Limits, TimeLimitWithinAnIterationKeepsTheOneBefore) {
+  constexpr int n = 600;
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal;
+  // Coupled like the stiffness of a boundary, and pulled here and there.
+  const Eigen::MatrixXd s = Eigen::MatrixXd::NullaryExpr(n, n, [](Eigen::Index i, Eigen::Index j) {
+    return i == j ? 4. : -1. / static_cast<double>((i - j) * (i - j));
+  });
+  const Eigen::VectorXd pull = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(engine); });
+  const ContactComplement contact{s, pull, Eigen::VectorXd::Ones(n)};
+  const auto expect_iterate = [](const ContactResult& result, const Progress& progress) {
+    EXPECT_EQ(result.outcome, Outcome::time_limit);
+    EXPECT_EQ(progress.iterations(), 1);
+    EXPECT_GT(result.clearance.maxCoeff(), 0);
+  };
+  Dawdler dawdler;
+  Progress exact(dawdler, 1.);
+  expect_iterate(active_set(contact, {}, exact), exact);
+  Progress uzawa(dawdler, 1.);
+  const StateOfBody unknown = [](const Eigen::VectorXd&) -> BodyState { return {0, {}}; };
+  expect_iterate(accelerated_uzawa(contact, {1e-12, 10000}, uzawa, unknown), uzawa);
 }
 
 class Stopper : public Observer {

@@ -93,6 +93,23 @@ TEST(Reuse, KeepsTheMeshThatHadToBeMended) {
   expect_same(second, first);
 }
 
+/// It is the largest thing that a body with much contact has.
+TEST(Reuse, DoesNotCopyTheContactComplement) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  problems::Shelf shelf;
+  Problem strip = problems::paper(Scheme::nonconforming, 1);
+  strip.domain = Rectangle{{0, 0}, {700, 1}};
+  strip.mesh.fineness = Divisions{700, 1};
+  strip.operator_key = "strip";
+  solve_with(shelf, strip, {ActiveSet{}, {}});
+  strip.body = Field(-1);
+  const Summary again = solve_with(shelf, strip, {ActiveSet{}, {}}).summary;
+  const double complement = std::pow(static_cast<double>(again.unknowns.contact), 2) * sizeof(double);
+  EXPECT_TRUE(again.reused);
+  EXPECT_GT(complement, 15e6);
+  EXPECT_LT(static_cast<double>(again.peak_memory_bytes), complement);
+}
+
 TEST(Reuse, RefusesALoadThatLiftsTheBodyOff) {
   problems::Shelf shelf;
   Problem problem = problems::paper(Scheme::nonconforming, 6);
