@@ -8,6 +8,7 @@
 #include "fem/load_projection.hpp"
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
+#include "observer.hpp"
 
 namespace signorini {
 namespace {
@@ -190,6 +191,12 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   return kSlack * (made.panels + kGrowth * made.fronts + made.stacks + 2 * kNumber * sizes.system +
                    sizes.triangles *
                        (kMesh + discretization(problem, spaces) + element_sum(spaces, false) + iteration));
+}
+
+double memory_of_history(int iterations) {
+  // Its own, the observer's, and a third while one of them grows, or goes into the result.
+  constexpr double histories = 3;
+  return histories * sizeof(Iteration) * std::exp2(std::ceil(std::log2(std::max(1, iterations))));
 }
 
 double memory_of_entry(double contact_unknowns) {

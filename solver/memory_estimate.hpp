@@ -27,6 +27,9 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
 /// The Solution of a solve alone.
 double memory_of_solution(const Spaces& spaces, double triangles);
 
+/// The records of so many iterations, by the solve and by whoever observes it.
+double memory_of_history(int iterations);
+
 /// What a sweep keeps of an entry.
 double memory_of_entry(double contact_unknowns);
 

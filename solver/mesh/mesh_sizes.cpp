@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "mesh/clusters.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "mesh/meeting_boxes.hpp"
 #include "mesh/narrow_places.hpp"
@@ -17,9 +18,9 @@ namespace signorini {
 namespace {
 
 /// Measured on meshes of polygons, as bounds: triangles by the square of the edge that they may have, edges
-/// of the boundary by that edge, and triangles that an edge of the boundary has to itself if it is shorter,
-/// or twice as long as the one beside it.
-constexpr double kTrianglesByArea = 5.5, kEdgesByLength = 2, kTrianglesByEdge = 4;
+/// of the boundary by that edge, triangles that an edge of the boundary has to itself if it is shorter, and
+/// triangles for every doubling of the distance from points that lie close together but the first.
+constexpr double kTrianglesByArea = 5.5, kEdgesByLength = 2, kTrianglesByEdge = 4, kTrianglesByDoubling = 15;
 
 MeshSizes sizes_of(const Rectangle& rectangle, const MeshRequest& request) {
   const auto [x, y] = divisions(rectangle, request);
@@ -92,21 +93,23 @@ class PredictedSizes::OfPolygon {
       part_of_edge_.push_back(numbers.at(part_of(polygon, rings_, e)));
     constexpr double most = 300'000;  // that a polygon without a fault has
     in_narrow_places_ = narrow_places(rings_.within(UnitFrame(rings_.points)), most).triangles;
+    clusters_ = clusters(rings_.points);
   }
 
   MeshSizes operator()(const MeshRequest& request) const {
     const double size = std::get<LargestEdge>(request.fineness).length;
     double triangles = in_narrow_places_ + by_area(area_, size), boundary = 0;
     for (const LocalSize& local : request.sizes) triangles += around(local, size);
+    for (const Cluster& cluster : clusters_)
+      triangles += kTrianglesByDoubling *
+                   std::max(0., std::log2(std::min(cluster.distance, size) / cluster.extent) - 1);
     MeshSizes sizes;
     sizes.parts.resize(parts_);
-    const auto length_of = [&](int e) { return (rings_.points[rings_.next(e)] - rings_.points[e]).norm(); };
     for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
-      const double length = length_of(e), beside = length_of(rings_.next(e));
+      const double length = (rings_.points[rings_.next(e)] - rings_.points[e]).norm();
       const double pieces =
           pieces_of({rings_.points[e], rings_.points[rings_.next(e)]}, length, size, request.sizes);
       if (length < size) triangles += kTrianglesByEdge;
-      triangles += kTrianglesByEdge * std::abs(std::log2(std::min(length, size) / std::min(beside, size)));
       boundary += pieces;
       MeshSizes::Part& own = sizes.parts[part_of_edge_[e]];
       own.edges += counted(pieces);
@@ -135,6 +138,7 @@ class PredictedSizes::OfPolygon {
   std::size_t parts_ = 0;
   std::vector<std::size_t> part_of_edge_;
   double in_narrow_places_ = 0;
+  std::vector<Cluster> clusters_;
 };
 
 PredictedSizes::PredictedSizes(const Domain& domain) : domain_(domain) {

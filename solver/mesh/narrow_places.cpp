@@ -11,10 +11,6 @@
 namespace signorini {
 namespace {
 
-/// Measured: triangles that a mesh has for each edge that the boundary gets in a narrow place, on both sides
-/// of it.
-constexpr double triangles_per_edge = 2.5;
-
 /// Pairs of edges closer than they are long; more of them are an intricate domain indeed.
 constexpr std::size_t most_pairs = 5'000'000;
 

@@ -115,6 +115,45 @@ TEST_P(Memory, OfThePapersIteration) {
   expect_bound(elastic(GetParam(), n, n), {few, std::nullopt});
 }
 
+/// Each has rings of triangles around it, from its size to that of the mesh.
+TEST_P(Memory, OfTinyHolesFarFromEachOther) {
+  constexpr int row = 12;
+  for (const double radius : {1e-2, 1e-5}) {
+    SCOPED_TRACE(radius);
+    Polygon plate{{{0, 0}, {row, 0}, {row, row}, {0, row}}, {}, {"bottom", "right", "top", "left"}};
+    for (int i = 0; i < row * row; ++i) {
+      const double x = i % row + 0.5, y = i / row + 0.5;
+      plate.holes.push_back({{x - radius, y}, {x, y - radius}, {x + radius, y}, {x, y + radius}});
+    }
+    Problem problem = in_polygon(membrane(GetParam(), 1, 1), row);
+    problem.domain = plate;
+    expect_bound(problem);
+  }
+}
+
+/// Those who watch a solve keep its history as it does.
+struct Chronicler : Observer {
+  void iterated(const Iteration& iteration) override { history.push_back(iteration); }
+
+  std::vector<Iteration> history;
+};
+
+TEST_P(Memory, OfALongHistory) {
+  PaperUzawa slow;
+  slow.rho = 1e-6;
+  slow.augmentation = 1;
+  slow.tolerance = 1e-15;
+  slow.max_iterations = 40'000;
+  const Problem problem = membrane(GetParam(), 1, 1);
+  const double predicted = for_solve(estimate(problem), {slow, std::nullopt}).memory_bytes;
+  Chronicler chronicler;
+  const auto peak =
+      static_cast<double>(solve(problem, {slow, std::nullopt}, chronicler).summary.peak_memory_bytes);
+  EXPECT_EQ(chronicler.history.size(), 40'000);
+  EXPECT_LE(peak, predicted);
+  EXPECT_GE(peak + tables, predicted / 2);
+}
+
 /// The tables for a load that jumps within triangles are made for the first one that does.
 TEST(MemoryOfTables, CountsThoseOfALoadThatJumps) {
   if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";

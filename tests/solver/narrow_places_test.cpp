@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "mesh/clusters.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh_quality.hpp"
 
@@ -74,6 +75,18 @@ TEST(NarrowPlaces, AreCountedAsTheMesherCuts) {
     EXPECT_LT(counted(polygon), 3 * triangles);
     EXPECT_GT(counted(polygon), triangles / 4);
   }
+}
+
+TEST(Clusters, AreWhatLiesCloseTogetherAndFarFromTheRest) {
+  const auto found = clusters({{0, 0}, {1, 0}, {0, 1}, {10, 0}, {10, 2}, {100, 0}});
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].extent, 1);
+  EXPECT_EQ(found[0].distance, 9);
+  EXPECT_EQ(found[1].extent, 2);
+  EXPECT_EQ(found[1].distance, 9);
+  EXPECT_EQ(found[2].extent, 10);
+  EXPECT_EQ(found[2].distance, 90);
+  EXPECT_TRUE(clusters({{0, 0}, {1, 0}, {2, 0}, {3, 0}}).empty());
 }
 
 TEST(NarrowPlaces, CornersAndSlitsNeedFewTriangles) {
