@@ -14,6 +14,7 @@
 #include "server/jobs/schema.hpp"
 #include "server/jobs/store.hpp"
 #include "server/jobs/stored_form.hpp"
+#include "server/jobs/write_ahead_log.hpp"
 
 namespace signorini::server {
 namespace {
@@ -89,7 +90,7 @@ void exchange_files(const path& fresh, const path& file) {
   std::filesystem::rename(fresh, file);
 }
 
-/// Returns how many jobs the new file has.
+/// Returns how many jobs the new file has; if none, the old one stays.
 std::size_t write_anew(const path& file, const std::string& fault, const std::string& vfs) {
   const path fresh = file.string() + ".new";
   remove_with_log(fresh);
@@ -101,12 +102,16 @@ std::size_t write_anew(const path& file, const std::string& fault, const std::st
   } catch (const SQLite::Exception& error) {
     throw cannot_open(file, fault + "; and it could not be repaired: " + error.getErrorStr());
   }
-  if (found > 0) {
+  if (found > 0)
     exchange_files(fresh, file);
-    return found;
-  }
-  remove_with_log(fresh);
-  throw cannot_open(file, fault + ", and no solve can be read from it: take a backup, or another directory");
+  else
+    remove_with_log(fresh);
+  return found;
+}
+
+std::string brought_over(const path& file, const std::string& fault, std::size_t found) {
+  return "the file did not hang together (" + fault + "); " + std::to_string(found) +
+         " solves were brought into a new one, and the old one is kept as " + file.string() + ".damaged";
 }
 
 // --- the rows
@@ -121,6 +126,10 @@ class Rows {
     for (const std::string& id : texts(database_, "SELECT id FROM jobs WHERE NOT (" + is_intact + ")"))
       fail(id, "entry in the list of solves");
     for (const std::string& id : without_problem("AND NOT damaged")) fail(id, "problem");
+    // It had ended once.
+    for (const std::string& id :
+         texts(database_, "SELECT id FROM jobs WHERE ended IS NULL AND id IN (SELECT job FROM results)"))
+      fail(id, "entry in the list of solves");
     if (depth == Depth::all) look_into_all();
     for (const char* table : {"results", "idempotency_keys"})
       database_.exec(std::string("DELETE FROM ") + table + " WHERE job NOT IN (SELECT id FROM jobs)");
@@ -203,22 +212,33 @@ std::vector<std::string> repair_rows(const path& file, Depth depth, const std::s
 
 Findings repair(const DataDir& directory, Depth depth, const std::string& vfs) {
   const path file = directory.database();
+  Findings findings;
+  // Before SQLite, which cuts the log off where it is damaged.
+  if (const std::optional<std::string> fault = WriteAheadLog(file).fault()) {
+    const std::size_t found = write_anew(file, *fault, vfs);
+    findings.damage.push_back(found > 0 ? brought_over(file, *fault, found)
+                                        : *fault + ", and no solve can be read from it");
+  }
+  const auto repair_them = [&] {
+    for (std::string& damage : repair_rows(file, depth, vfs)) findings.damage.push_back(std::move(damage));
+  };
   std::optional<std::string> fault = fault_of_file(file, vfs);
   if (!fault) {
     try {
-      return {repair_rows(file, depth, vfs)};
+      repair_them();
+      return findings;
     } catch (const SQLite::Exception& error) {
       if (!is_of_file(error, file)) throw cannot_open(file, error.getErrorStr());
       fault = error.getErrorStr();
     }
   }
   const std::size_t found = write_anew(file, *fault, vfs);
-  Findings findings;
-  findings.damage.push_back("the file did not hang together (" + *fault + "); " + std::to_string(found) +
-                            " solves were brought into a new one, and the old one is kept as " +
-                            file.string() + ".damaged");
+  if (found == 0)
+    throw cannot_open(file,
+                      *fault + ", and no solve can be read from it: take a backup, or another directory");
+  findings.damage.push_back(brought_over(file, *fault, found));
   try {
-    for (std::string& damage : repair_rows(file, depth, vfs)) findings.damage.push_back(std::move(damage));
+    repair_them();
   } catch (const SQLite::Exception& error) {
     throw cannot_open(file, error.getErrorStr());
   }

@@ -1,9 +1,12 @@
 #include "server/jobs/salvage.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -11,13 +14,15 @@
 #include <string_view>
 #include <vector>
 
+#include "server/jobs/write_ahead_log.hpp"
+
 namespace signorini::server {
 namespace {
 
 // --- the pages
 
-constexpr std::size_t page_bytes = 4096;  // SQLite's default, which every database of jobs has
-constexpr std::size_t head_bytes = 100;   // of the file, on its first page
+constexpr std::size_t page_bytes = WriteAheadLog::page_bytes;
+constexpr std::size_t head_bytes = 100;  // of the file, on its first page
 
 std::uint32_t big_endian(std::string_view bytes, std::size_t offset, int count = 4) {
   std::uint32_t number = 0;
@@ -33,9 +38,9 @@ std::string content_of(const std::filesystem::path& file) {
 /// The pages of a database, numbered from 1, with those of its log in their places.
 class Pages {
  public:
-  explicit Pages(const std::filesystem::path& file)
-      : file_(content_of(file)), log_(content_of(file.string() + "-wal")) {
-    if (file_.empty() && log_.empty()) throw std::runtime_error("nothing can be read from " + file.string());
+  explicit Pages(const std::filesystem::path& file) : file_(content_of(file)), log_(file) {
+    if (file_.empty() && log_.is_empty())
+      throw std::runtime_error("nothing can be read from " + file.string());
     read_log();
     note_unused();
   }
@@ -48,25 +53,39 @@ class Pages {
   /// Nothing beyond the end.
   std::optional<std::string_view> page(std::uint32_t number) const {
     const auto logged = logged_.find(number);
-    if (logged != logged_.end()) return std::string_view(log_).substr(logged->second, page_bytes);
+    if (logged != logged_.end()) return logged->second.content;
     if (number == 0 || number > file_.size() / page_bytes) return std::nullopt;
     return std::string_view(file_).substr((number - 1) * page_bytes, page_bytes);
+  }
+
+  /// The numbers of all, those that were written last first: where the last writing of a page is lost, what
+  /// it held before may have gone to another one since.
+  std::vector<std::uint32_t> newest_first() const {
+    std::vector<std::uint32_t> numbers(count());
+    std::iota(numbers.begin(), numbers.end(), 1);
+    std::ranges::stable_sort(numbers, std::greater(), [this](std::uint32_t number) {
+      const auto logged = logged_.find(number);
+      return logged == logged_.end() ? 0 : logged->second.place + 1;
+    });
+    return numbers;
   }
 
   /// Whether the page was given up, and what it holds may be a job that was deleted.
   bool is_unused(std::uint32_t number) const { return unused_.contains(number) || is_marked_unused(number); }
 
  private:
-  /// Frames of the last life of the log, up to the last one that ends a transaction.
+  struct Logged {
+    std::size_t place;
+    std::string_view content;
+  };
+
+  /// Up to the last frame that ends a transaction.
   void read_log() {
-    constexpr std::size_t log_head = 32, frame_head = 24;
-    std::map<std::uint32_t, std::size_t> open;
-    for (std::size_t at = log_head; at + frame_head + page_bytes <= log_.size();
-         at += frame_head + page_bytes) {
-      if (std::string_view(log_).substr(at + 8, 8) != std::string_view(log_).substr(16, 8)) break;
-      open[big_endian(log_, at)] = at + frame_head;
-      if (big_endian(log_, at + 4) == 0) continue;
-      for (const auto& [number, offset] : open) logged_[number] = offset;
+    std::map<std::uint32_t, Logged> open;
+    for (const WriteAheadLog::Frame& frame : log_.frames()) {
+      open[frame.page] = {frame.place, log_.content(frame)};
+      if (!frame.commits) continue;
+      for (const auto& [number, page] : open) logged_[number] = page;
       open.clear();
     }
   }
@@ -92,8 +111,9 @@ class Pages {
     return map != number && bytes && big_endian(*bytes, entry_bytes * (number - map - 1), 1) == unused;
   }
 
-  const std::string file_, log_;
-  std::map<std::uint32_t, std::size_t> logged_;  ///< where in the log
+  const std::string file_;
+  const WriteAheadLog log_;
+  std::map<std::uint32_t, Logged> logged_;  ///< what was written last of the pages in the log
   std::set<std::uint32_t> unused_;
 };
 
@@ -274,12 +294,12 @@ std::size_t salvage(const std::filesystem::path& file, SQLite::Database& whole) 
   SQLite::Transaction transaction(whole);
   const auto columns =
       static_cast<std::size_t>(whole.execAndGet("SELECT count(*) FROM pragma_table_info('jobs')").getInt());
-  // One row of an id is enough: the same is never on two pages that are in use.
+  // Of several rows of an id the first one counts.
   SQLite::Statement job(whole, "INSERT OR IGNORE INTO jobs VALUES (" + question_marks(columns) + ")");
   SQLite::Statement problem(whole, "INSERT OR IGNORE INTO problems VALUES (?, ?)");
   SQLite::Statement piece(whole, "INSERT OR IGNORE INTO results VALUES (?, ?, ?)");
   SQLite::Statement key(whole, "INSERT OR IGNORE INTO idempotency_keys VALUES (?, ?, ?)");
-  for (std::uint32_t number = 1; number <= pages.count(); ++number) {
+  for (const std::uint32_t number : pages.newest_first()) {
     for_each_row(pages, number, [&](const Row& row, bool of_table) {
       if (row.empty() || !is_text(row[0])) return;
       if (!of_table && row.size() == columns) insert(job, row);
