@@ -50,11 +50,11 @@ SQLite::Database connect(const std::filesystem::path& file, const std::string& v
   // How room is given back is settled before the first page is written; later this would be a write.
   if (database.execAndGet("PRAGMA page_count").getInt() == 0)
     database.exec("PRAGMA auto_vacuum = INCREMENTAL");
-  // A checkpoint costs two syncs more: few of them, of 16 MiB each.
+  // A checkpoint costs two syncs more: few of them, of 2 MiB each, for which a full disk has the reserve.
   database.exec(
       "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA temp_store = "
       "MEMORY;"
-      "PRAGMA wal_autocheckpoint = 4096; PRAGMA journal_size_limit = 16777216");
+      "PRAGMA wal_autocheckpoint = 512; PRAGMA journal_size_limit = 2097152");
   constexpr int any_number = -1;
   database.createFunction("row_seal", any_number, true, nullptr, row_seal);
   return database;

@@ -57,7 +57,9 @@ void give_room_back(SQLite::Database& database) {
   database.exec("PRAGMA auto_vacuum = INCREMENTAL; VACUUM");
 }
 
-SQLite::Database open_jobs(const DataDir& directory, const std::string& vfs) {
+/// What a killed service has left needs room to be opened.
+SQLite::Database open_jobs(const DataDir& directory, const std::string& vfs, DiskReserve& reserve) {
+  if (!reserve.room()) reserve.spend();
   repair_if_damaged(directory, vfs);
   try {
     SQLite::Database database = connect(directory.database(), vfs);
@@ -148,9 +150,9 @@ SqliteStore::SqliteStore(const std::filesystem::path& directory, const StoreLimi
     : limits_(limits),
       directory_(directory),
       vfs_(vfs),
-      writer_(open_jobs(directory_, vfs_)),
-      reader_(connect(directory_.database(), vfs_)),
-      reserve_(directory_.reserve()) {
+      reserve_(directory_.reserve()),
+      writer_(open_jobs(directory_, vfs_, reserve_)),
+      reader_(connect(directory_.database(), vfs_)) {
   try {
     recover();
   } catch (const std::runtime_error& error) {
@@ -385,7 +387,7 @@ void SqliteStore::shrink() {
 
 /// The process that left these jobs as running is dead: nobody else has the directory.
 void SqliteStore::recover() {
-  write([&] {
+  write_what_frees([&] {
     clock_ = RetentionClock(kept_clock(writer_));
     const KeptClock clock = clock_.reading();
     prepared(writer_,

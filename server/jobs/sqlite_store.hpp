@@ -69,17 +69,17 @@ class SqliteStore : public JobStore {
   const DataDir directory_;
   const std::string vfs_;
 
+  mutable std::mutex trouble_mutex_;
+  mutable std::optional<std::string> trouble_;  ///< of the last write, which may pass
+  mutable std::optional<std::string> damage_;   ///< of the database, which stays
+  DiskReserve reserve_;
+
   SQLite::Database writer_;
   CommitQueue commits_{writer_};
   RetentionClock clock_;  ///< used within steps only
 
   mutable std::mutex reading_;
   mutable SQLite::Database reader_;
-
-  mutable std::mutex trouble_mutex_;
-  mutable std::optional<std::string> trouble_;  ///< of the last write, which may pass
-  mutable std::optional<std::string> damage_;   ///< of the database, which stays
-  DiskReserve reserve_;
 };
 
 }  // namespace signorini::server

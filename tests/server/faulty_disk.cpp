@@ -16,7 +16,7 @@ std::atomic<Fault> fault_now = Fault::none;
 std::atomic<int> writes_left = 0;
 std::atomic<int> sync_count = 0;
 std::atomic<int> sync_milliseconds = 0;
-std::atomic<std::int64_t> growth = 0;  ///< bytes that files have grown by since there is no room
+std::atomic<std::int64_t> growth = 0;  ///< bytes of all files together since there is no room
 
 /// The directory of the database that was opened last.
 std::filesystem::path directory;
@@ -72,6 +72,9 @@ int write(sqlite3_file* file, const void* bytes, int count, sqlite3_int64 offset
 }
 
 int truncate(sqlite3_file* file, sqlite3_int64 size) {
+  sqlite3_int64 before = 0;
+  of(file).methods().xFileSize(of(file).real(), &before);
+  if (fault_now == Fault::no_room) growth -= before - size;
   return of(file).methods().xTruncate(of(file).real(), size);
 }
 

@@ -280,6 +280,34 @@ TEST_F(SqliteStoreTest, AFullDiskIsFreedByDeleting) {
   EXPECT_LT(std::filesystem::file_size(file()), size);
 }
 
+TEST_F(SqliteStoreTest, AFullDiskTakesOneDeletionAfterTheOther) {
+  SqliteStore& store = reopen({100, plenty, std::chrono::hours(1)});
+  constexpr int jobs = 12;
+  for (int i = 0; i < jobs; ++i) {
+    store.add(new_job(std::to_string(i)));
+    store.finish(*store.claim(), success(450'000));
+  }
+  FaultyDisk::fail(FaultyDisk::Fault::no_room);
+  for (int i = 0; i < jobs; ++i) EXPECT_TRUE(store.remove_ended(std::to_string(i))) << i;
+  FaultyDisk::fail(FaultyDisk::Fault::none);
+}
+
+TEST_F(SqliteStoreTest, AFullDiskLetsAKilledServiceStartAgain) {
+  SqliteStore& store = reopen();
+  store.add(new_job("ran"));
+  store.claim();
+  const TemporaryDirectory killed;
+  for (const char* suffix : {"", "-wal"})
+    std::filesystem::copy_file(file() + suffix, killed.path() + "/jobs.sqlite" + suffix);
+  close();
+  FaultyDisk::fail(FaultyDisk::Fault::no_room);
+  {
+    SqliteStore again(killed.path(), {100, plenty, std::chrono::hours(1)}, FaultyDisk::vfs());
+    EXPECT_EQ(again.find("ran")->status, JobStatus::queued);
+  }
+  FaultyDisk::fail(FaultyDisk::Fault::none);
+}
+
 TEST_F(SqliteStoreTest, TheFileShrinksAgain) {
   SqliteStore& store = reopen();
   for (int i = 0; i < 5; ++i) {
