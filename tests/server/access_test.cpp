@@ -266,12 +266,12 @@ class Memory : public ServiceTest {
  protected:
   Memory() : ServiceTest(options()) {}
 
-  /// For one small problem at a time, which is predicted to take some 0.9 MB.
+  /// For one small problem at a time, which is predicted to take some 5 MB, most of it for the history.
   static ServiceOptions options() {
     ServiceOptions options;
-    options.max_memory = 1.5e6;
+    options.max_memory = 8e6;
     options.limits.max_unknowns = 1'000'000;
-    options.limits.max_memory = 1.5e6;
+    options.limits.max_memory = 8e6;
     return options;
   }
 };
@@ -281,7 +281,7 @@ TEST_F(Memory, ThatIsSpokenForIs503UntilASolveEnds) {
   const auto reply = post("slow");
   const json refusal = expect_problem(reply, 503);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("--max-memory"), std::string::npos) << refusal;
-  EXPECT_NE(refusal.at("detail").get<std::string>().find("0.0015 GB"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.at("detail").get<std::string>().find("0.008 GB"), std::string::npos) << refusal;
   EXPECT_FALSE(reply->get_header_value("Retry-After").empty());
   client_.Delete("/v1/solves/" + id);
   wait_for(id, "cancelled");
