@@ -35,6 +35,7 @@ class Levels {
 
   void add(Solution solution) {
     const Summary& summary = solution.summary;
+    if (!summary.error_bound && summary.outcome == Outcome::time_limit) throw TimeUp(summary.advice);
     if (!summary.error_bound)
       throw SolveError("the error bound leaves the range of double precision: choose units closer to 1");
     const Unknowns& n = summary.unknowns;

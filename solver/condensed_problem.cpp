@@ -146,9 +146,8 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   const Fields fields = find(settings.method, progress, start);
   Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
-  progress.enter(Phase::certify);
-  add_bound(discretization_->problem, certify(*discretization_, solution, fields.coupling, progress),
-            solution, progress);
+  const auto bound = [&] { return certify(*discretization_, solution, fields.coupling, progress); };
+  add_bound(discretization_->problem, bound, solution, progress);
   return solution;
 }
 

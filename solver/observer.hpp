@@ -75,7 +75,7 @@ class SolveError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The time limit was reached before there was any iterate.
+/// The time limit was reached before there was any iterate, or its error bound.
 struct TimeUp : SolveError {
   using SolveError::SolveError;
 };

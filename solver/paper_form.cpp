@@ -4,6 +4,7 @@
 #include "condensed_problem.hpp"
 #include "contact/paper_uzawa.hpp"
 #include "contact/rigid_motions.hpp"
+#include "data_check.hpp"
 #include "requested_mesh.hpp"
 #include "summarize.hpp"
 
@@ -26,7 +27,7 @@ Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& setting
 Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh, const Solution& iterate,
                             Progress& progress) {
   SilentObserver silent(progress.observer());
-  Progress within(silent, std::nullopt);
+  Progress within(silent, progress.time_left());
   CondensedProblem condensed(problem, mesh, within);
   const Fields fields = condensed.find(ActiveSet{}, within);
   const Solution discrete = describe(condensed.discretization(), fields, {ActiveSet{}, std::nullopt}, within);
@@ -43,9 +44,9 @@ Solution iterate_paper_form(const Problem& problem, const Settings& settings, Pr
 
 Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
+  require_sound_data(problem, *mesh, progress);
   Solution solution = iterate(problem, *mesh, settings, progress);
-  progress.enter(Phase::certify);
-  add_bound(problem, certify_iterate(problem, mesh, solution, progress), solution, progress);
+  add_bound(problem, [&] { return certify_iterate(problem, mesh, solution, progress); }, solution, progress);
   return solution;
 }
 

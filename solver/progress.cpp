@@ -15,7 +15,7 @@ void Progress::enter(Phase phase) {
   entered_ = now;
   phase_ = phase;
   observer_.entered(phase);
-  if (phase != Phase::certify) found_ = false;
+  found_ = false;
   check();
 }
 
@@ -25,6 +25,11 @@ void Progress::check() {
     throw TimeUp("the time limit of " + std::to_string(*time_limit_) + " s was reached in the phase '" +
                  name(phase_) +
                  "', before there was any iterate: raise solver.time_limit or coarsen the mesh");
+}
+
+std::optional<double> Progress::time_left() const {
+  if (!time_limit_) return std::nullopt;
+  return *time_limit_ + (phase_ == Phase::certify ? kForBound : 0) - spent_before_ - seconds();
 }
 
 bool Progress::record(Iteration iteration) {

@@ -23,8 +23,12 @@ class Progress {
   /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up and there is no answer yet.
   void enter(Phase phase);
 
-  /// There is an iterate to be kept: until the next phase but certify, only the observer ends the solve.
+  /// There is an iterate to be kept: until the next phase, only the observer ends the solve.
   void found() { found_ = true; }
+
+  /// Seconds of the time limit that are left, if there is one: what a part of the solve may take that has a record of
+  /// its own.
+  std::optional<double> time_left() const;
 
   /// Throws like enter().
   void check();
@@ -53,7 +57,11 @@ class Progress {
   double seconds_in(Phase phase) const;
 
  private:
-  bool in_time() const { return !time_limit_ || spent_before_ + seconds() < *time_limit_; }
+  /// The phase certify may go on a little beyond the limit: hardly any time is needed for the bound of a small problem
+  /// whose iteration the limit ended.
+  static constexpr double kForBound = 0.2;
+
+  bool in_time() const { return time_left().value_or(1) > 0; }
 
   Observer& observer_;
   std::optional<double> time_limit_;

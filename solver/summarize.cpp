@@ -249,7 +249,9 @@ Solution describe(const Discretization& problem, const Fields& fields, const Set
   return solution;
 }
 
-void add_bound(const Problem& problem, Certificate certificate, Solution& solution, const Progress& progress) {
+namespace {
+
+void add(const Problem& problem, Certificate certificate, Solution& solution) {
   if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
     std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(solution.summary.notes));
     solution.summary.error_bound = std::move(certificate.bound);
@@ -259,6 +261,24 @@ void add_bound(const Problem& problem, Certificate certificate, Solution& soluti
     std::string note = "there is no error bound: its numbers leave the range of double precision";
     for (const std::string& reason : certificate.bound.unmet) note += "; " + reason;
     solution.summary.notes.push_back(std::move(note));
+  }
+}
+
+}  // namespace
+
+void add_bound(const Problem& problem, const std::function<Certificate()>& certify, Solution& solution,
+               Progress& progress) {
+  try {
+    progress.enter(Phase::certify);
+    add(problem, certify(), solution);
+  } catch (const TimeUp&) {
+    const std::string why =
+        "the time limit was reached before the error bound was known: raise solver.time_limit or coarsen the mesh";
+    solution.summary.notes.push_back("there is no error bound: " + why);
+    if (solution.summary.outcome == Outcome::converged) {
+      solution.summary.outcome = Outcome::time_limit;
+      solution.summary.advice = why;
+    }
   }
   solution.summary.timings = timings(progress);
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "certify/certificate.hpp"
 #include "fem/discretization.hpp"
 #include "problem/settings.hpp"
@@ -37,7 +39,9 @@ Reaction make_reaction(std::string part, const std::vector<double>& values);
 /// pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
 Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress);
 
-/// Adds the error bound, if its numbers are finite, and what must be said about it.
-void add_bound(const Problem& problem, Certificate certificate, Solution& solution, const Progress& progress);
+/// Enters the phase certify and adds the error bound, if its numbers are finite, and what must be said about it. If the
+/// time is up before, there is none, and the outcome says so.
+void add_bound(const Problem& problem, const std::function<Certificate()>& certify, Solution& solution,
+               Progress& progress);
 
 }  // namespace signorini

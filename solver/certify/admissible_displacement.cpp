@@ -23,6 +23,9 @@ constexpr double kNearly = 1e3 * kSmall;
 /// So many times the largest displacement is out of reach.
 constexpr double kReach = 1e3;
 
+/// Of all edges on which a gap is enclosed; none takes more than a fifth of what the others have left.
+constexpr int kCellsOfGaps = 20'000, kShares = 5;
+
 Eigen::VectorXd value_of(const VectorField& field, int components, const Point& x, const Vector& normal) {
   Eigen::VectorXd value(components);
   for (int c = 0; c < components; ++c) value[c] = field(c, x, normal);
@@ -85,7 +88,7 @@ const Field& gap_on(const Discretization& problem, const ContactEdge& contact) {
 }
 
 AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
-                                               const Eigen::VectorXd& coupling)
+                                               const Eigen::VectorXd& coupling, Progress& progress)
     : problem_(problem),
       components_(problem.spaces().components),
       clearance_(problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()))),
@@ -99,7 +102,9 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, co
     if (const auto* fixed = condition_on<Fixed>(problem.problem, part.name)) fix(part, *fixed);
     if (condition_on<Roller>(problem.problem, part.name)) roll(part);
   }
-  for (const ContactEdge& contact : problem.clearance.edges) meet(contact);
+  CellBudget budget{kCellsOfGaps, &progress};
+  lower_points(budget);
+  for (const ContactEdge& contact : problem.clearance.edges) meet(contact, budget);
 }
 
 void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progress& progress) {
@@ -126,8 +131,10 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
       const double lack = -room(contact, k);
       if (lack > 0 && !values.held_points[point]) points_.col(point) -= lack * direction(contact);
     }
+  CellBudget budget{kCellsOfGaps, &progress};
+  lower_points(budget);
   for (const ContactEdge& contact : problem_.clearance.edges)
-    if (!values.held_middles[contact.edge]) lower_below(contact);
+    if (!values.held_middles[contact.edge]) lower_below(contact, budget);
 }
 
 void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
@@ -152,8 +159,9 @@ void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
     freedom[points + contact.edge].hold_along(contact.direction, rounding);
   }
   relax_displacement(problem_, freedom, sweeps, points_, middles_, progress);
+  CellBudget budget{kCellsOfGaps, &progress};
   for (const ContactEdge& contact : problem_.clearance.edges)
-    if (!touches(contact)) lower_below(contact);
+    if (!touches(contact)) lower_below(contact, budget);
 }
 
 bool AdmissibleDisplacement::touches(const ContactEdge& contact) const {
@@ -265,14 +273,13 @@ void AdmissibleDisplacement::constrain_points() {
     if (const auto* fixed = condition_on<Fixed>(problem_.problem, part.name))
       for (const int edge : part.edges) fix_points(edge, *fixed);
 
-  std::map<int, std::vector<PointConstraint>> constraints;
   // The normals of a straight line are one, but for rounding, and must not meet in a point.
   const auto constrain = [&](int point, PointConstraint constraint) {
-    for (const PointConstraint& known : constraints[point])
+    for (const PointConstraint& known : constraints_[point])
       if (components_ == 2 &&
           is_same_direction(known.direction, constraint.direction, known.rounding + constraint.rounding))
         constraint.direction = known.direction;
-    constraints[point].push_back(std::move(constraint));
+    constraints_[point].push_back(std::move(constraint));
   };
   for (const BoundaryPart& part : mesh.boundary)
     if (condition_on<Roller>(problem_.problem, part.name))
@@ -288,15 +295,16 @@ void AdmissibleDisplacement::constrain_points() {
       constrain(mesh.edges[contact.edge][k],
                 {direction(contact), g, touches, false, mesh.rounding_of_normal(contact.edge)});
     }
-  for (const auto& [point, own] : constraints) admit(point, own);
-  if (components_ == 2) follow_traces(constraints);
+  for (const auto& [point, own] : constraints_) admit(point, own);
+  if (components_ == 2) follow_traces();
 }
 
 /// A quadratic v_n that has the mean of the trace and is further from g at the ends exceeds it in between. To
 /// lower it there would change the volume, which costs the more the less compressible the body is: the ends
 /// come as near to g as the trace instead, where the other conditions let them.
-void AdmissibleDisplacement::follow_traces(std::map<int, std::vector<PointConstraint>> constraints) {
+void AdmissibleDisplacement::follow_traces() {
   const Mesh& mesh = problem_.mesh;
+  auto constraints = constraints_;
   std::vector<bool> follows(problem_.clearance.edges.size(), false);
   for (bool again = true; std::exchange(again, false);)
     for (std::size_t i = 0; i < follows.size(); ++i) {
@@ -428,7 +436,7 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
   }
 }
 
-void AdmissibleDisplacement::meet(const ContactEdge& contact) {
+void AdmissibleDisplacement::meet(const ContactEdge& contact, CellBudget& budget) {
   if (!is_known_on_edges(gap(contact)))
     refuse(gap(contact).name() + " is a function that is known in single points only: give a formula");
   const auto& [a, b] = problem_.mesh.edges[contact.edge];
@@ -439,33 +447,74 @@ void AdmissibleDisplacement::meet(const ContactEdge& contact) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kSmall * scale_;
   };
   if (touches(contact) && touches_in(a, 0) && touches_in(b, 1))
-    close(contact);
+    close(contact, budget);
   else
-    lower_below(contact);
+    lower_below(contact, budget);
 }
 
 /// v_n = g, but for what the polynomial is off by, as a multiple of the bubble 4 s (1 − s).
-void AdmissibleDisplacement::close(const ContactEdge& contact) {
+void AdmissibleDisplacement::close(const ContactEdge& contact, CellBudget& budget) {
   const int edge = contact.edge;
   const Eigen::VectorXd n = direction(contact);
   const Field& own = gap(contact);
   const double ninth = own.formula() ? largest_coefficient(own, EdgeLine(problem_.mesh, edge),
                                                            Lift::kDegree + 1, small_coefficient())
                                      : 0;
-  if (!std::isfinite(ninth)) return lower_below(contact);
+  if (!std::isfinite(ninth)) return lower_below(contact, budget);
   middles_.col(edge) += room(contact, 0.5) * n;
   add_lift(edge, [&](double s) -> Eigen::VectorXd { return room(contact, s) * n; });
   middles_.col(edge) -= ninth * Lift::errors().over_bubble * n;
 }
 
+BelowGap AdmissibleDisplacement::below_gap(const ContactEdge& contact, const EdgeLine& line) const {
+  return {gap(contact),
+          line,
+          {along_contact(contact, 0), along_contact(contact, 0.5), along_contact(contact, 1)},
+          {room(contact, 0), room(contact, 1)}};
+}
+
+/// Where bubbles alone would be high, BelowGap::level(): v changes by what is linear on the triangles around a point, which
+/// keeps what is below the gap there.
+void AdmissibleDisplacement::lower_points(CellBudget& budget) {
+  const Mesh& mesh = problem_.mesh;
+  std::map<int, std::vector<PointConstraint>> lower;
+  for (const ContactEdge& contact : problem_.clearance.edges) {
+    if (touches(contact) || !is_known_on_edges(gap(contact))) continue;
+    const EdgeLine line(mesh, contact.edge);
+    double level = 0;
+    budget.share(kShares, [&](CellBudget& own) { level = below_gap(contact, line).level(own); });
+    if (level == 0) continue;
+    for (const int k : {0, 1}) {
+      const int point = mesh.edges[contact.edge][k];
+      if (!fixed_points_.contains(point))
+        lower[point].push_back({direction(contact), along_contact(contact, k) - level, false});
+    }
+  }
+  if (lower.empty()) return;
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(components_, points_.cols());
+  for (auto& [point, own] : lower) {
+    for (PointConstraint known : constraints_[point]) {
+      known.equality = known.is_roller;
+      own.push_back(std::move(known));
+    }
+    if (const auto nearest = nearest_admissible(points_.col(point), own, scale_))
+      change.col(point) = *nearest - points_.col(point);
+  }
+  points_ += change;
+  for (std::size_t edge = 0; edge < mesh.edges.size(); ++edge)
+    middles_.col(edge) += (change.col(mesh.edges[edge][0]) + change.col(mesh.edges[edge][1])) / 2;
+}
+
 /// v_n ≤ g by a multiple of the bubble 4 s (1 − s).
-void AdmissibleDisplacement::lower_below(const ContactEdge& contact) {
+void AdmissibleDisplacement::lower_below(const ContactEdge& contact, CellBudget& budget) {
   const EdgeLine line(problem_.mesh, contact.edge);
-  const double needed = bubble_below_gap(
-      gap(contact), line, {along_contact(contact, 0), along_contact(contact, 0.5), along_contact(contact, 1)},
-      {room(contact, 0), room(contact, 1)});
+  double needed = 0;
+  budget.share(kShares, [&](CellBudget& own) { needed = below_gap(contact, line).bubble(own); });
   if (!std::isfinite(needed))
-    refuse(gap(contact).name() + " is not known to be finite near " + to_string(line.at(0.5)));
+    refuse(is_known(series_on(gap(contact), line, Interval(0, 1), 0)[0])
+               ? gap(contact).name() + " falls from what is fixed beside " + to_string(line.at(0.5)) +
+                     " without bound on its slope: raise it there, or lower what is fixed"
+               : not_known_to_be_finite(gap(contact), line.at(0.5)));
   else if (needed > 0)
     middles_.col(contact.edge) -= needed * direction(contact);
 }

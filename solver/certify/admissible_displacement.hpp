@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "certify/gap_bubble.hpp"
 #include "certify/lift.hpp"
 #include "certify/local_fields.hpp"
 #include "certify/point_constraints.hpp"
@@ -31,7 +32,7 @@ class AdmissibleDisplacement {
  public:
   /// `coupling`: the unknowns of the trace space.
   AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
-                         const Eigen::VectorXd& coupling);
+                         const Eigen::VectorXd& coupling, Progress& progress);
 
   /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp.
   /// What is lifted stays as it is, and so do the values that touch.
@@ -87,7 +88,7 @@ class AdmissibleDisplacement {
   void constrain_points();
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);
-  void follow_traces(std::map<int, std::vector<PointConstraint>> constraints);
+  void follow_traces();
   /// The clearance is 0 at both ends.
   bool touches(const ContactEdge& contact) const;
   bool exceeds_gap(const ContactEdge& contact) const;
@@ -95,9 +96,11 @@ class AdmissibleDisplacement {
   void add_rest(int edge, const EdgeLine& line, const Field& field);
   double small_coefficient() const;
   void roll(const BoundaryPart& part);
-  void meet(const ContactEdge& contact);
-  void close(const ContactEdge& contact);
-  void lower_below(const ContactEdge& contact);
+  void lower_points(CellBudget& budget);
+  void meet(const ContactEdge& contact, CellBudget& budget);
+  void close(const ContactEdge& contact, CellBudget& budget);
+  void lower_below(const ContactEdge& contact, CellBudget& budget);
+  BelowGap below_gap(const ContactEdge& contact, const EdgeLine& line) const;
   void add_lift(int edge, const Values& d);
   void refuse(const std::string& reason);
   void refuse_point(int point);
@@ -114,6 +117,7 @@ class AdmissibleDisplacement {
   Eigen::MatrixXd middles_;    ///< a column an edge
   double scale_;               ///< max |v|
   std::map<int, Eigen::VectorXd> fixed_points_;
+  std::map<int, std::vector<PointConstraint>> constraints_;  ///< of contacts and rollers, by points
   std::map<int, Lift> lifts_;
   std::map<int, LiftRest> rests_;  ///< of u_D on edges
   std::vector<std::string> unmet_;

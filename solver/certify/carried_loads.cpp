@@ -63,6 +63,7 @@ class Carrier {
         laws_(laws),
         pressure_(pressure),
         way_out_(mesh_.triangles.size(), -1),
+        loads_(mesh_),
         squares_of_loads_(Eigen::VectorXd::Zero(problem.triangles())),
         on_edges_(Eigen::Matrix3Xd::Zero(3, problem.triangles())) {}
 
@@ -73,14 +74,16 @@ class Carrier {
       if (!forces.empty()) add_load(t, forces[t], into[t]);
       is_any = !start(t, into[t]) || is_any;
     }
-    if (!is_any) return {};
+    CarriedLoads carried{.loads = UncertainLoads(mesh_)};
+    if (!is_any) return carried;
     for (const ContactPressure::Lack& lack : pressure_.lacks) act(lack.edge, {lack.force, lack.moment}, into);
-    CarriedLoads carried;
     std::vector<int> order = from_fixed_parts();
     if (order.empty()) {
       order = from_a_root();
+      carried.root = order.front();
       carried.change_of_pressure = change_pressure(into);
     }
+    carried.loads = loads_;
     carried.is_held = order.size() == mesh_.triangles.size() && carried.change_of_pressure <= 1;
     if (!carried.is_held) return carried;
     double square = 0;
@@ -131,6 +134,7 @@ class Carrier {
   void act(int edge, const Action& action, std::vector<Action>& into) {
     const int t = mesh_.edge_triangles[edge][0];
     add_edge(t, edge, action);
+    loads_.on_edges[t][mesh_.local_edge(t, edge)] += action.force + 2 * action.moment / mesh_.length(edge);
     into[t].add(action, size(t));
   }
 
@@ -216,6 +220,7 @@ class Carrier {
       const double of_edge = problem_.traction[edge].uncertain_force;
       if (of_edge == 0) continue;
       add_edge(t, edge, {of_edge, of_edge * mesh_.length(edge) / 2});
+      loads_.on_edges[t][mesh_.local_edge(t, edge)] += of_edge;
       into.add({of_edge, of_edge * mesh_.length(edge) / 2}, h);
     }
     return into.force == 0;
@@ -226,6 +231,7 @@ class Carrier {
     if (force == 0) return;
     const AffineMap map(mesh_.corners(t));
     into.add({force, 0}, size(t));
+    loads_.on_triangles[t] += force;
     // The projection onto P1 of a load with ∫ |q| = F is nowhere larger than 9 F / area; six nodes.
     const double at_node = map.determinant * to_reference(map) * 18 * force / map.determinant;
     squares_of_loads_[t] += 2 * 6 * at_node * at_node;  // two loads at most: (a + b)² ≤ 2 (a² + b²)
@@ -301,6 +307,7 @@ class Carrier {
   const ContactPressure& pressure_;
   std::vector<int> way_out_;  ///< of each triangle the edge towards Γ_D
   std::vector<bool> seen_ = std::vector<bool>(mesh_.triangles.size(), false);
+  UncertainLoads loads_;
   Eigen::VectorXd squares_of_loads_;
   Eigen::Matrix3Xd on_edges_;  ///< at each node of the three edges of a triangle
 };

@@ -2,6 +2,7 @@
 
 #include "certify/contact_pressure.hpp"
 #include "certify/law_pieces.hpp"
+#include "certify/motion_differences.hpp"
 #include "fem/discretization.hpp"
 
 namespace signorini {
@@ -14,7 +15,8 @@ namespace signorini {
 ///
 /// z the data of the element that makes the stress on T (tractions on edges, divergence), ν the norm of the map from
 /// them to the stress on the reference triangle, J the Jacobian, c the largest eigenvalue of C; |J| in place of |J|²
-/// for a membrane. The bound knows no signs and is some thousand times too large, of something that is small.
+/// for a membrane. It takes hardly any work and is some thousand times too large: enough for what is known to many
+/// digits. For what is not, there is carried_by_motions().
 ///
 /// Without Γ_D all of it is carried to one triangle, and there meets what p* and the rollers take: p* (1 + r·d) in
 /// place of p*, and W r·n on rollers, W the mean of p*, with the rigid motion r for which G r has the resultant,
@@ -28,6 +30,9 @@ struct CarriedLoads {
   double change_of_pressure = 0;
   /// Neither Γ_D nor Γ_C and rollers take it: then the norm says nothing.
   bool is_held = true;
+  /// What is carried, with what the pressure and the rollers take; and without Γ_D the triangle to which.
+  UncertainLoads loads;
+  std::optional<int> root = std::nullopt;
 };
 
 /// `forces`: of loads that are constant on each triangle and act there besides, those of LoadsBroughtBack; none if empty.

@@ -1,5 +1,6 @@
 #include "certify/certificate.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -19,6 +20,9 @@ namespace {
 /// What the rules for a varying law may miss, beside the square of the bound's largest part.
 constexpr double kOfGap = 2e-5;
 
+/// What carried loads may add to the bound before they are worth factorisations.
+constexpr double kLittle = 0.01;
+
 /// Of the bound of an elastic body, as many sweeps without end take off 3 % more (an L-shape, a half-disc, ν
 /// = 0.3 and 0.4999), for a multiple of the time.
 constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
@@ -34,7 +38,7 @@ LoadsBroughtBack add_patches(const Discretization& problem, const Solution& solu
   const bool is_admissible = problem.spaces().order == 0 || pair.pressure.potential_at_points.empty();
   if (is_admissible || problem.problem.mesh.adaptive) return back;
   SilentObserver silent(progress.observer());
-  Progress within(silent, std::nullopt);
+  Progress within(silent, progress.time_left());
   for (Patch& patch : patches_where_pressure_changes(problem, pair.pressure)) {
     try {
       const PatchPairs pairs(problem, solution.stress, pair, std::move(patch), within);
@@ -85,7 +89,7 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
                     Progress& progress) {
   const Eigen::VectorXd clearance =
       problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
-  AdmissiblePair pair{{problem, solution, coupling}, {problem, solution.stress, clearance}};
+  AdmissiblePair pair{{problem, solution, coupling, progress}, {problem, solution.stress, clearance}};
   Certificate certificate;
   std::vector<std::string> unmet = pair.v.unmet();
   // Rounding leaves less, but where 1 − 2ν or the inverse of a contrast is no more than that.
@@ -119,10 +123,14 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
     totals.add<2>(problem, laws, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
   }
   const CarriedLoads carried = carry_uncertain_loads(problem, laws, pair.pressure, of_patches.forces);
-  totals.carried = carried.norm + std::sqrt(of_patches.square);
   totals.contact *= 1 + carried.change_of_pressure;
   totals.second_counts = carried.change_of_pressure == 0;
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
+  const bool is_little = carried.norm <= kLittle * bound_from(totals).value;
+  totals.carried = is_little || !carried.is_held
+                       ? carried.norm
+                       : std::min(carried.norm, carried_by_motions(problem, laws, carried.loads, carried.root, progress));
+  totals.carried += std::sqrt(of_patches.square);
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);
   certificate.pressure = pressure_where(owners, problem, pair.pressure);

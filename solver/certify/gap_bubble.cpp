@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 
 namespace signorini {
@@ -16,7 +17,10 @@ constexpr double kNearEnough = 1.05;
 /// Cells are not cut further: where g is smooth on them, and where it has a kink or jumps.
 constexpr double kSmallestSmooth = 1. / 4096, kSmallestRough = 1e-9;
 
-constexpr int kFirstCells = 16, kMostCells = 4000;
+constexpr int kFirstCells = 16;
+
+/// Bubbles are lower than so many times what v_n is above g, or the ends are lowered.
+constexpr double kHigh = 4;
 
 /// A quadratic function of s by its values at 0, ½, 1.
 class Quadratic {
@@ -42,9 +46,9 @@ class Quadratic {
   double begin_, end_, second_, size_;
 };
 
-/// A part of the edge and the multiple that it takes at most.
+/// A part of the edge.
 struct Cell {
-  double takes;
+  double takes;  ///< of the bubble, at most
   double from, to;
   bool is_smooth;
 
@@ -57,55 +61,92 @@ double bubble(double s) {
   return 4 * s * (1 - s);
 }
 
-/// With r = g − v_n: next to an end r ≥ s min r', and inside r by its values.
-Cell cell(const Field& gap, const EdgeLine& line, const Quadratic& v, double from, double to) {
+/// With r = g − v_n: next to an end r ≥ r₀ + s min r', and everywhere by its values.
+Cell cell(const BelowGap& of, const Quadratic& v, double from, double to) {
+  constexpr double none = std::numeric_limits<double>::infinity();
   const Interval s(from, to);
-  const Series g = series_on(gap, line, s, 1);
-  Cell own{0, from, to, is_known(g[1])};
-  if (own.is_smooth && (from == 0 || to == 1)) {
-    const Interval slope = g[1] - v.slope(s);
-    own.takes = from == 0 ? -slope.lower() / (4 * (1 - to)) : slope.upper() / (4 * from);
+  const Series g = series_on(of.gap, of.line, s, 1);
+  Cell own{none, from, to, is_known(g[1])};
+  if (g[0].lower() - v(s).upper() >= 0) {
+    own.takes = 0;
+    return own;
+  }
+  const auto room = [&](int end) { return std::max(0., of.room[end]); };
+  if (from == 0) {
+    own.takes = -(g[1].lower() - v.slope(s).upper() + room(0) / to) / (4 * (1 - to));
+    return own;
+  }
+  if (to == 1) {
+    own.takes = (g[1].upper() - v.slope(s).lower() - room(1) / (1 - from)) / (4 * from);
     return own;
   }
   // By the values, or by the value in the middle and the slopes, whichever tells more.
   const double middle = own.middle();
-  const Interval by_slopes = own.is_smooth ? line.value(gap, middle) + g[1] * (s - middle) : kAnything;
+  const Interval by_slopes = own.is_smooth ? of.line.value(of.gap, middle) + g[1] * (s - middle) : kAnything;
   const double lowest = std::max(g[0].lower(), by_slopes.lower()) - v(s).upper();
-  if (!(lowest >= 0)) own.takes = -lowest / std::min(bubble(from), bubble(to));
+  own.takes = -lowest / std::min(bubble(from), bubble(to));
   return own;
 }
 
 /// By cells, of which the one that asks for most is cut in two while that can change much.
-double bubble_by_cells(const Field& gap, const EdgeLine& line, const Quadratic& v, double rounding) {
+double bubble_by_cells(const BelowGap& of, const Quadratic& v, double rounding, CellBudget& budget) {
   std::priority_queue<Cell> open;
-  for (int i = 0; i < kFirstCells; ++i)
-    open.push(cell(gap, line, v, 1. * i / kFirstCells, (i + 1.) / kFirstCells));
+  for (int i = 0; i < kFirstCells; ++i) open.push(cell(of, v, 1. * i / kFirstCells, (i + 1.) / kFirstCells));
   double at_least = 0;
-  while (open.size() < kMostCells && open.top().can_be_cut()) {
+  for (; budget.cells > 0 && open.top().can_be_cut(); --budget.cells) {
+    budget.look_around();
     const Cell worst = open.top();
     const double middle = worst.middle();
-    at_least = std::max(at_least, (v(middle) - line.value(gap, middle)) / bubble(middle));
+    at_least = std::max(at_least, (v(middle) - of.line.value(of.gap, middle)) / bubble(middle));
     if (worst.takes <= kNearEnough * at_least + rounding) break;
     open.pop();
-    open.push(cell(gap, line, v, worst.from, middle));
-    open.push(cell(gap, line, v, middle, worst.to));
+    open.push(cell(of, v, worst.from, middle));
+    open.push(cell(of, v, middle, worst.to));
   }
   return std::max(0., open.top().takes);
+}
+
+/// What v_n is above g at most.
+double excess(const BelowGap& of, const Quadratic& v) {
+  double most = 0;
+  for (int i = 0; i < kFirstCells; ++i) {
+    const Interval s(1. * i / kFirstCells, (i + 1.) / kFirstCells);
+    most = std::max(most, v(s).upper() - series_on(of.gap, of.line, s, 0)[0].lower());
+  }
+  return most;
 }
 
 }  // namespace
 
 /// With r = g − v_n, r₀ ≥ 0 and r₁ ≥ 0 at the ends: if g is smooth, r = r₀ (1 − s) + r₁ s + s (1 − s) k with
 /// k = −r[0, s, 1] ∈ −½ r'', and r + 4 b s (1 − s) ≥ 0 if −(k + 4 b) ≤ (√r₀ + √r₁)².
-double bubble_below_gap(const Field& gap, const EdgeLine& line,
-                        const std::array<double, 3>& normal_displacement, const std::array<double, 2>& room) {
+double BelowGap::bubble(CellBudget& budget) const {
   const Quadratic v(normal_displacement);
   const double rounding = kSmall * v.size();
   const double roots = std::pow(std::sqrt(std::max(0., room[0])) + std::sqrt(std::max(0., room[1])), 2);
   const Interval curvature = series_on(gap, line, Interval(0, 1), 2)[2];
   const double of_whole = (curvature.upper() - v.second() - roots) / 4;
   if (of_whole <= rounding) return std::max(0., of_whole);
-  return std::min(bubble_by_cells(gap, line, v, rounding) + rounding, of_whole);
+  return std::min(bubble_by_cells(*this, v, rounding, budget) + rounding, of_whole);
+}
+
+double BelowGap::level(CellBudget& budget) const {
+  const double high = bubble(budget);
+  if (high == 0) return 0;
+  const double most = excess(*this, Quadratic(normal_displacement));
+  if (!std::isfinite(most) || high <= kHigh * most) return 0;
+  const auto lowered = [&](double by) {
+    const auto& [a, b, c] = normal_displacement;
+    return BelowGap{gap, line, {a - by, b - by, c - by}, {room[0] + by, room[1] + by}};
+  };
+  double best = most;
+  for (double own = most / 2, least = most; own > most / 1024; own /= 2) {
+    const double sum = own + lowered(own).bubble(budget);
+    if (sum >= least) break;
+    least = sum;
+    best = own;
+  }
+  return best;
 }
 
 }  // namespace signorini

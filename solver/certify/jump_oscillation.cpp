@@ -22,8 +22,7 @@ constexpr int kPieces = 1 << (2 * kCuts<D>);
 
 /// What the integrals on the pieces may be off by, relative to the mean of f − Πf: it costs as much of the
 /// bound.
-constexpr ProjectionTolerance kTolerance{1e-6, 5e-4};
-constexpr int kCells = 20'000;
+constexpr double kTolerance = 5e-4;
 
 /// The least stress on a reference triangle without traction, for loads that are linear on each of its
 /// pieces.
@@ -84,14 +83,13 @@ const PiecewiseLoads<D>& piecewise_loads(int reference) {
 
 template <int D>
 double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
-                        const std::array<Point, 3>& corners, Progress& progress) {
+                        const std::array<Point, 3>& corners, CellBudget& budget) {
   const ReferenceMap map = nearest_reference<D>(corners);
   const PiecewiseLoads<D>& loads = piecewise_loads<D>(map.reference);
   const Mesh& pieces = loads.pieces();
   const AffineMap whole(corners);
   const Point origin = corners[map.first], reference_origin = reference_triangles()[map.reference].corners[0];
   const double area = whole.determinant / 2, mean = projected.unbalanced / std::sqrt(area);
-  CellBudget budget{kCells, &progress};
   typename PiecewiseLoads<D>::Values values;
   double rest_square = 0, uncertain_square = 0;
   for (int s = 0; s < kPieces<D>; ++s) {
@@ -107,8 +105,10 @@ double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
     Eigen::Matrix<double, D, 3> linear;
     double own_uncertain = 0;
     for (int c = 0; c < D; ++c) {
-      const Projection of_load =
-          project(load.fields()[c], own, {kTolerance.smooth * mean, kTolerance.of_jumps * mean}, budget);
+      Projection of_load;
+      budget.share(D * (kPieces<D> - s) - c, [&](CellBudget& part) {
+        of_load = project(load.fields()[c], own, {kTolerance * mean, kTolerance * mean}, part);
+      });
       const Projection::Nodes of_balanced = balanced.row(c), linear_of_balanced = linear_part(of_balanced);
       linear.row(c) = (of_load.linear - linear_of_balanced).template head<3>();
       const double rest = of_load.beyond_linear + norm(of_balanced - linear_of_balanced);
@@ -128,8 +128,8 @@ double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
 }
 
 template double jump_oscillation<1>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&,
-                                    Progress&);
+                                    CellBudget&);
 template double jump_oscillation<2>(const VectorField&, const ProjectedLoad&, const std::array<Point, 3>&,
-                                    Progress&);
+                                    CellBudget&);
 
 }  // namespace signorini

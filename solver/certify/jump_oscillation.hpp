@@ -1,6 +1,7 @@
 #pragma once
 
 #include "fem/load_projection.hpp"
+#include "fem/triangle_pieces.hpp"
 
 namespace signorini {
 
@@ -22,6 +23,6 @@ namespace signorini {
 /// hence B⁻¹ r (for a membrane w and r as they are).
 template <int D>
 double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
-                        const std::array<Point, 3>& corners, Progress& progress);
+                        const std::array<Point, 3>& corners, CellBudget& budget);
 
 }  // namespace signorini

@@ -73,20 +73,37 @@ double linear_remainder_on_edge(const std::array<Point, 3>& corners, int e) {
   return least_of_maps(corners, constant).second;
 }
 
+template <int D>
+MotionRemainder motion_remainder(const std::array<Point, 3>& corners) {
+  const ReferenceMap map = nearest_reference<D>(corners);
+  const ReferenceTriangle& reference = reference_triangles()[map.reference];
+  const MotionRemainder& known = reference.constants(D).motion;
+  MotionRemainder own{known.on_triangle * growth<D>(map), {}};
+  for (int e = 0; e < 3; ++e) {
+    const int there = (e + 3 - map.first) % 3;
+    own.on_edges[e] = known.on_edges[there] * growth<D>(map) *
+                      std::sqrt(length(corners, e) / length(reference.corners, there) / map.jacobian.determinant());
+  }
+  return own;
+}
+
 template ReferenceMap nearest_reference<1>(const std::array<Point, 3>&);
 template ReferenceMap nearest_reference<2>(const std::array<Point, 3>&);
 template double linear_remainder<1>(const std::array<Point, 3>&);
 template double linear_remainder<2>(const std::array<Point, 3>&);
 template double linear_remainder_on_edge<1>(const std::array<Point, 3>&, int);
 template double linear_remainder_on_edge<2>(const std::array<Point, 3>&, int);
+template MotionRemainder motion_remainder<1>(const std::array<Point, 3>&);
+template MotionRemainder motion_remainder<2>(const std::array<Point, 3>&);
 
 const std::array<ReferenceTriangle, 2>& reference_triangles() {
   static const std::array<ReferenceTriangle, 2> references{
-      ReferenceTriangle{
-          {Point(0, 0), Point(1, 0), Point(0, 1)}, {0.177, {0.59, 0.465, 0.465}}, {0.54, {1.81, 1.44, 1.44}}},
+      ReferenceTriangle{{Point(0, 0), Point(1, 0), Point(0, 1)},
+                        {0.177, {0.59, 0.465, 0.465}, {0.32, {0.87, 0.755, 0.755}}},
+                        {0.54, {1.81, 1.44, 1.44}, {0.62, {2.41, 2.06, 2.06}}}},
       ReferenceTriangle{{Point(0, 0), Point(1, 0), Point(0.5, std::sqrt(0.75))},
-                        {0.139, {0.459, 0.459, 0.459}},
-                        {0.343, {1.01, 1.01, 1.01}}}};
+                        {0.139, {0.459, 0.459, 0.459}, {0.241, {0.66, 0.66, 0.66}}},
+                        {0.343, {1.01, 1.01, 1.01}, {0.384, {1.48, 1.48, 1.48}}}}};
   return references;
 }
 

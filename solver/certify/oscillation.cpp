@@ -10,12 +10,12 @@ namespace signorini {
 
 template <int D>
 double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
-                   const LawOnMesh& laws, Progress& progress) {
+                   const LawOnMesh& laws, CellBudget& budget) {
   const auto corners = problem.mesh.corners(t);
   const ProjectedLoad& load = problem.body[t];
   double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
   if (load.jumps && sum > 0)
-    sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, progress));
+    sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, budget));
   for (int e = 0; e < 3; ++e) {
     const int edge = problem.mesh.triangle_edges[t][e];
     const double rest =
@@ -26,8 +26,8 @@ double oscillation(const Discretization& problem, int t, const ContactPressure& 
 }
 
 template double oscillation<1>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
-                               Progress&);
+                               CellBudget&);
 template double oscillation<2>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
-                               Progress&);
+                               CellBudget&);
 
 }  // namespace signorini

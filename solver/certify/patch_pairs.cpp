@@ -87,7 +87,7 @@ bool PatchPairs::are_admissible() const {
 }
 
 AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
-  AdmissiblePair pair{{held_.problem(), held_.solution(), held_.coupling()},
+  AdmissiblePair pair{{held_.problem(), held_.solution(), held_.coupling(), progress},
                       {loaded_.problem(), loaded_.solution().stress, loaded_.clearance()}};
   pair.v.relax(work_of_loads(held_.problem()), kStepsFromAverage, progress);
   minimize_potential(loaded_.problem(), pair.v, loaded_.clearance(), pair.pressure, progress);

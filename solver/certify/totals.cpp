@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "certify/oscillation.hpp"
 #include "fem/edge_pieces.hpp"
@@ -11,6 +12,9 @@ namespace {
 
 /// What g − p may be in the mean, relative to v.
 constexpr double kTolerance = 1e-10;
+
+/// Of all edges, and of all triangles in which a load jumps.
+constexpr int kCellsOfGaps = 20'000, kCellsOfJumps = 20'000;
 
 /// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its
 /// enclosure allows, the same in all of them; 0 where that is not known to be finite, which
@@ -62,11 +66,18 @@ template <int D, typename Sums>
 void Totals::add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
                  const Owners& owners, Progress& progress, const AdmissiblePair* second) {
   LawField<D> law(problem.problem.material);
+  CellBudget of_jumps{kCellsOfJumps, &progress};
+  int jumps = 0;
+  for (int t = 0; t < problem.triangles(); ++t) jumps += owners[t] >= 0 && problem.body[t].jumps;
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
-    const double o = oscillation<D>(problem, t, pair.pressure, laws, progress);
+    double o = 0;
+    of_jumps.share(std::max(1, jumps), [&](CellBudget& budget) {
+      o = oscillation<D>(problem, t, pair.pressure, laws, budget);
+    });
+    jumps -= problem.body[t].jumps;
     all += own;
     all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;
@@ -76,12 +87,15 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     balanced_correction += of_correction;
     shares[owners[t]] += of_gap + of_correction + own.skew;
   }
-  CellBudget budget{100'000, &progress};
-  for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
+  CellBudget budget{kCellsOfGaps, &progress};
+  const int edges = static_cast<int>(problem.clearance.edges.size());
+  for (int i = 0; i < edges; ++i) {
     const int owner = owners[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]];
     if (owner < 0) continue;
     if (is_zero(pair.pressure, i) && (!second || is_zero(second->pressure, i))) continue;
-    const ContactTerms terms(problem, pair.v, i, budget);
+    std::optional<ContactTerms> of_edge;
+    budget.share(edges - i, [&](CellBudget& part) { of_edge.emplace(problem, pair.v, i, part); });
+    const ContactTerms& terms = *of_edge;
     const double own = terms(pair.pressure, pair.v);
     contact += own;
     shares[owner] += own;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <queue>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -68,15 +70,16 @@ EdgePiece piece_of(const Formula& formula, const EdgeLine& edge, double begin, d
   const Series all = enclose(formula, edge, Interval(begin, end), kDegree + 1);
   const double half = piece.length() / 2, rest = largest(all[kDegree + 1]) * std::pow(half, kDegree + 1);
   const Interval& values = all[0];
-  const double of_values = (values.upper() - values.lower()) / 2;
+  const double radius =
+      is_known(values) ? (values.upper() - values.lower()) / 2 : std::numeric_limits<double>::infinity();
   const double middle = piece.middle();
   const Series at_middle = enclose(formula, edge, Interval(middle, middle), kDegree);
-  if (std::isfinite(rest) && is_known(at_middle[kDegree])) {
+  if (rest <= radius && is_known(at_middle[kDegree])) {
     for (int k = 0; k <= kDegree; ++k) piece.coefficients[k] = boost::numeric::median(at_middle[k]);
     piece.remainder = rest;
   } else {
     piece.coefficients[0] = is_known(values) ? boost::numeric::median(values) : 0;
-    piece.remainder = is_known(values) ? of_values : std::numeric_limits<double>::infinity();
+    piece.remainder = radius;
   }
   return piece;
 }
@@ -103,21 +106,27 @@ Series series_on(const Field& field, const EdgeLine& edge, const Interval& s, in
 std::vector<EdgePiece> pieces_on_edge(const Field& field, const EdgeLine& edge, double tolerance,
                                       CellBudget& budget) {
   if (!field.formula()) return {interpolated(field, edge)};
-  std::vector<EdgePiece> pieces, open{piece_of(*field.formula(), edge, 0, 1)};
-  while (!open.empty()) {
-    budget.look_around();
-    const EdgePiece piece = open.back();
-    open.pop_back();
-    const double middle = piece.middle();
+  const auto less = [](const EdgePiece& a, const EdgePiece& b) {
+    return std::pair(a.remainder * a.length(), a.length()) < std::pair(b.remainder * b.length(), b.length());
+  };
+  std::priority_queue<EdgePiece, std::vector<EdgePiece>, decltype(less)> open(less);
+  std::vector<EdgePiece> pieces;
+  const auto look_at = [&](double begin, double end) {
+    const EdgePiece piece = piece_of(*field.formula(), edge, begin, end);
     const bool is_good = piece.remainder * piece.length() <= tolerance * std::sqrt(piece.length());
-    if (is_good || budget.cells <= 0 || !(piece.begin < middle && middle < piece.end)) {
+    if (is_good || !(begin < piece.middle() && piece.middle() < end))
       pieces.push_back(piece);
-      continue;
-    }
-    --budget.cells;
-    open.push_back(piece_of(*field.formula(), edge, middle, piece.end));
-    open.push_back(piece_of(*field.formula(), edge, piece.begin, middle));
+    else
+      open.push(piece);
+  };
+  for (look_at(0, 1); !open.empty() && budget.cells > 0; --budget.cells) {
+    budget.look_around();
+    const EdgePiece piece = open.top();
+    open.pop();
+    look_at(piece.begin, piece.middle());
+    look_at(piece.middle(), piece.end);
   }
+  for (; !open.empty(); open.pop()) pieces.push_back(open.top());
   return pieces;
 }
 

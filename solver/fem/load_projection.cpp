@@ -10,13 +10,14 @@
 namespace signorini {
 namespace {
 
-/// What an integral may be off by, relative to the largest load: what is uncertain is carried to the fixed
-/// parts by an estimate that is some thousand times too large.
-constexpr ProjectionTolerance kTolerance{1e-9, 5e-6};
+/// What an integral may be off by, relative to the largest load.
+constexpr ProjectionTolerance kTolerance{1e-9, 2e-5};
 
-/// Where the first try stops along curves: it takes hardly any work, and tells how much a finer one would
-/// take.
-constexpr double kFirstOfJumps = 5e-2;
+/// Of each triangle: enough where the load is smooth, or jumps along a straight line.
+constexpr int kFirstCells = 4;
+
+/// Of all the others together, for a formula of a few operations.
+constexpr int kCellsOfRoughLoads = 20'000;
 
 /// Of what f has between P1 and P2: if the rest is larger where f jumps, that part is left with it.
 constexpr double kMuch = 0.2;
@@ -37,40 +38,43 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   double largest = 0;
   for (int t = 0; t < count; ++t)
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
-  CellBudget budget{20 * count + 100'000, progress};
   all_.assign(count, constant);
-  // All triangles along a curve share the budget alike: one that has none left would be off by as much as f.
-  int of_curves = 0;
+  std::vector<int> rough;
   for (int t = 0; t < count; ++t) {
     if (progress && t % 64 == 0) progress->check();
-    const int before = budget.cells;
-    project_on(body, mesh.corners(t), largest, kFirstOfJumps, budget, all_[t]);
-    if (all_[t].uncertain_force > 0) of_curves += before - budget.cells;
+    CellBudget budget{kFirstCells * body.size(), progress};
+    const std::vector<std::string> known = unmet_;
+    if (project_on(body, mesh.corners(t), largest, budget, all_[t])) continue;
+    rough.push_back(t);
+    unmet_ = known;  // more cells may tell what a few do not
   }
-  // Cells are as many as one by the root of the tolerance.
-  const double finest = kFirstOfJumps * std::pow(of_curves / (0.8 * std::max(1, budget.cells)), 2);
-  const double of_jumps = std::max(kTolerance.of_jumps, finest);
-  for (int t = 0; t < count && of_jumps < kFirstOfJumps; ++t) {
-    const double area = AffineMap(mesh.corners(t)).determinant / 2;
-    if (all_[t].uncertain_force <= of_jumps * largest * area) continue;
-    all_[t] = constant;
-    project_on(body, mesh.corners(t), largest, of_jumps, budget, all_[t]);
+  // One that has no cells would be off by as much as f.
+  CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
+  for (std::size_t i = 0; i < rough.size(); ++i) {
+    ProjectedLoad& load = all_[rough[i]] = constant;
+    budget.share(rough.size() - i, [&](CellBudget& own) {
+      project_on(body, mesh.corners(rough[i]), largest, own, load);
+    });
   }
 }
 
-void LoadProjection::project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
-                                double of_jumps, CellBudget& budget, ProjectedLoad& load) {
+bool LoadProjection::project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
+                                CellBudget& budget, ProjectedLoad& load) {
   const double twice_area = AffineMap(corners).determinant;
   double rest_square = 0, unbalanced_square = 0;
+  bool is_enough = true;
   for (int c = 0; c < body.size(); ++c) {
     const Field& field = body.fields()[c];
     if (field.is_constant()) continue;
     if (!field.formula() && unmet_.empty())
       unmet_.push_back(field.name() + " is a function that is known in single points only: give a formula");
-    const Projection own = project(field, corners, {kTolerance.smooth * largest, of_jumps * largest}, budget);
+    Projection own;
+    budget.share(body.size() - c, [&](CellBudget& part) {
+      own = project(field, corners, {kTolerance.fine * largest, kTolerance.rough * largest}, part);
+      is_enough = is_enough && part.cells > 0;
+    });
     if (!own.is_finite && unmet_.empty())
-      unmet_.push_back(field.name() + " is not known to be finite near " +
-                       to_string((corners[0] + corners[1] + corners[2]) / 3));
+      unmet_.push_back(not_known_to_be_finite(field, (corners[0] + corners[1] + corners[2]) / 3));
     const bool leaves = own.jumps && own.rest > kMuch * own.between;
     load.jumps = load.jumps || leaves;
     load.projection.row(c) = own.quadratic;
@@ -85,6 +89,7 @@ void LoadProjection::project_on(const VectorField& body, const std::array<Point,
   }
   load.rest = std::sqrt(rest_square);
   load.unbalanced = std::sqrt(unbalanced_square);
+  return is_enough;
 }
 
 }  // namespace signorini

@@ -38,9 +38,9 @@ class LoadProjection {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
-  /// `largest`: of |f|; `of_jumps`: what integrals along curves may be off by, relative to it.
-  void project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
-                  double of_jumps, CellBudget& budget, ProjectedLoad& load);
+  /// `largest`: of |f|. Returns false if a component could do with more cells than its share of the budget.
+  bool project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
+                  CellBudget& budget, ProjectedLoad& load);
 
   std::vector<ProjectedLoad> all_;
   std::vector<std::string> unmet_;

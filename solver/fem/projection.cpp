@@ -133,16 +133,15 @@ class Sampler {
  public:
   Sampler(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
           CellBudget& budget)
-      : field_(field), map_(corners), tolerance_(tolerance.smooth) {
+      : field_(field), map_(corners), tolerances_(tolerance), budget_(budget), patient_until_(budget.cells - kFew) {
     const Field* fields[] = {&field};
-    const Settled settled = [&](const Corners& cell, double share) { return add_smooth(cell, share); };
-    const Acceptance of_smooth = mean_remainder_below(tolerance.smooth),
-                     of_jump = mean_remainder_below(tolerance.of_jumps);
-    const Acceptance accept = [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
-      return (is_undecided_ ? of_jump : of_smooth)(models, share, of_cell);
-    };
     for_each_piece(
-        fields, corners, accept, budget, [&](const TrianglePiece& piece) { add_piece(piece); }, settled);
+        fields, corners,
+        [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
+          return models[0].remainder() * share <= tolerance_now() * std::sqrt(of_cell);
+        },
+        budget, [&](const TrianglePiece& piece) { add_piece(piece); },
+        [&](const Corners& cell, double share) { return add_smooth(cell, share); });
   }
 
   const Samples& samples() const { return samples_; }
@@ -150,16 +149,22 @@ class Sampler {
  private:
   using Corners = std::array<Point, 3>;
 
+  /// By so many cells a function that is smooth meets the fine tolerance, unless the triangle is large beside its waves.
+  static constexpr int kFew = 64;
+
+  double tolerance_now() const { return budget_.cells > patient_until_ ? tolerances_.fine : tolerances_.rough; }
+
   bool add_smooth(const Corners& cell, double share) {
     const Corners place{map_(cell[0]), map_(cell[1]), map_(cell[2])};
     const Formula& formula = *field_.formula();
     // Most cells lie on curves: there its derivatives are not known, nor worth their work.
-    (void)series_on_triangle(formula, place, 0, is_undecided_);
-    samples_.jumps = samples_.jumps || is_undecided_;
-    if (is_undecided_) return false;
-    const Series series = series_on_triangle(formula, place, Series::kMost, is_undecided_);
+    bool is_undecided = false;
+    const Interval values = range(series_on_triangle(formula, place, 0, is_undecided));
+    samples_.jumps = samples_.jumps || is_undecided;
+    if (is_undecided || !is_known(values)) return false;
+    const Series series = series_on_triangle(formula, place, Series::kMost, is_undecided);
     const auto r = [&](int k) { return largest(series[k]); };
-    const double allowed = tolerance_ / std::sqrt(share);
+    const double allowed = tolerance_now() / std::sqrt(share);
     for (const int degree : {5, 8, 10}) {
       if (degree == 5 ? r(3) > 0 : !(2 * r(degree) <= allowed)) continue;
       add(cell, share, degree);
@@ -191,8 +196,9 @@ class Sampler {
 
   const Field& field_;
   const AffineMap map_;
-  const double tolerance_;
-  bool is_undecided_ = false;  ///< a jump or a kink may lie in the last cell that was looked at
+  const ProjectionTolerance tolerances_;
+  const CellBudget& budget_;
+  const int patient_until_;  ///< while the budget has more than so many cells the tolerance is the fine one
   Samples samples_;
 };
 
@@ -214,8 +220,8 @@ Samples sampled(const Field& function, const AffineMap& map) {
 
 }  // namespace
 
-Projection project(const Field& field, const std::array<Point, 3>& corners,
-                   const ProjectionTolerance& tolerance, CellBudget& budget) {
+Projection project(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
+                   CellBudget& budget) {
   Projection own;
   if (const auto value = only_value(field, corners)) {
     own.quadratic.setConstant(*value);

@@ -24,14 +24,15 @@ struct Projection {
   bool is_finite = true;
 };
 
-/// What integrals may be off by, as values of f: where it is smooth, and where it jumps along a curve.
+/// What integrals may be off by, a value of f: where f is smooth a few cells meet the fine one; where it is not, so many
+/// as that would take are not worth it.
 struct ProjectionTolerance {
-  double smooth, of_jumps;
+  double fine, rough;
 };
 
-/// What is no formula is taken for what it is in the points of a rule.
-Projection project(const Field& field, const std::array<Point, 3>& corners,
-                   const ProjectionTolerance& tolerance, CellBudget& budget);
+/// As far as the budget lasts. What is no formula is taken for what it is in the points of a rule.
+Projection project(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
+                   CellBudget& budget);
 
 /// Π₁ of a polynomial of P2, and its norm.
 Projection::Nodes linear_part(const Projection::Nodes& quadratic);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
+#include <utility>
 
 #include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
@@ -10,8 +12,12 @@
 namespace signorini {
 namespace {
 
-/// What an integral may be off by, relative to the largest traction.
-constexpr double kTolerance = 1e-9;
+/// What an integral may be off by, relative to the largest traction: where it is smooth, and around a point where it is
+/// not, which takes a cell for every half of it.
+constexpr double kTolerance = 1e-9, kToleranceOfRough = 1e-8;
+
+/// Of all edges together.
+constexpr int kCells = 20'000;
 
 /// A scalar on an edge times a fixed vector.
 struct Part {
@@ -31,11 +37,12 @@ std::vector<Part> parts_of(const Condition& condition, int components, const Vec
 /// A scalar on an edge in the points of Gauss on each of some pieces, with what the sums are off by.
 class Projection {
  public:
-  Projection(const Field& field, const EdgeLine& edge, double largest, CellBudget& budget) {
+  Projection(const Field& field, const EdgeLine& edge, double largest, CellBudget& budget)
+      : field_(field), edge_(edge), largest_(largest) {
     if (field.formula())
-      cut(field, edge, Interval(0, 1), kTolerance * largest, budget);
+      cut(budget);
     else
-      add(field, edge, Interval(0, 1));
+      add(Interval(0, 1));
     LocalVector moments = LocalVector::Zero(3);
     for (std::size_t q = 0; q < points_.size(); ++q) moments += weights_[q] * values_[q] * edge_basis(2, points_[q]);
     nodes = project_onto_edge(2, moments);
@@ -43,6 +50,7 @@ class Projection {
 
   Eigen::Vector3d nodes;
   double force = 0, work = 0;
+  bool is_finite = true;
 
   double rest() const {
     double square = 0;
@@ -57,39 +65,79 @@ class Projection {
   /// The rule is exact for degree 9.
   static constexpr int kOrder = 9;
 
-  void cut(const Field& field, const EdgeLine& edge, const Interval& s, double allowed, CellBudget& budget) {
-    const double length = s.upper() - s.lower(), half = length / 2, middle = (s.lower() + s.upper()) / 2;
-    const Series series = series_on(field, edge, s, kOrder);
-    const auto r = [&](int k) { return largest(series[k]) * std::pow(half, k); };
-    if (2 * r(kOrder) * std::sqrt(length) <= allowed) {
-      add(field, edge, s);
+  /// A part of the edge on which no more than the values are known.
+  struct Cell {
+    Interval s, values;
+
+    double length() const { return s.upper() - s.lower(); }
+    /// The middle of the values is off by no more.
+    double radius() const { return (values.upper() - values.lower()) / 2; }
+    bool operator<(const Cell& other) const {
+      return std::pair(radius() * length(), length()) < std::pair(other.radius() * other.length(), other.length());
+    }
+  };
+
+  void cut(CellBudget& budget) {
+    look_at(Interval(0, 1));
+    for (; !open_.empty() && budget.cells > 0; --budget.cells) {
+      budget.look_around();
+      const Cell cell = open_.top();
+      const double begin = cell.s.lower(), end = cell.s.upper(), middle = (begin + end) / 2;
+      if (!(begin < middle && middle < end)) break;
+      open_.pop();
+      look_at(Interval(begin, middle));
+      look_at(Interval(middle, end));
+    }
+    for (; !open_.empty(); open_.pop()) take(open_.top());
+  }
+
+  void look_at(const Interval& s) {
+    const double length = s.upper() - s.lower();
+    const Series series = series_on(field_, edge_, s, kOrder);
+    const auto r = [&](int k) { return largest(series[k]) * std::pow(length / 2, k); };
+    if (2 * r(kOrder) * std::sqrt(length) <= kTolerance * largest_) {
+      add(s);
       force += 2 * length * r(kOrder);
       work += 2 * length * r(kOrder - 1);
       value_square_ += length * 4 * r(5) * r(5);
       return;
     }
-    const double uncertain = series[0].upper() - series[0].lower();
-    const bool is_small = uncertain * std::sqrt(length) <= allowed || !(s.lower() < middle && middle < s.upper());
-    if (is_small || budget.cells-- <= 0) {
-      add(field, edge, s);
-      force += length * uncertain;
-      work += length * uncertain;
-      value_square_ += length * uncertain * uncertain;
-      return;
-    }
-    cut(field, edge, Interval(s.lower(), middle), allowed, budget);
-    cut(field, edge, Interval(middle, s.upper()), allowed, budget);
+    const Cell cell{s, series[0]};
+    if (cell.radius() * length <= kToleranceOfRough * largest_)
+      take(cell);
+    else
+      open_.push(cell);
   }
 
-  void add(const Field& field, const EdgeLine& edge, const Interval& s) {
+  void add(const Interval& s) {
+    add(s, [&](double point) { return edge_.value(field_, point); });
+  }
+
+  /// By the middle of the values.
+  void take(const Cell& cell) {
+    is_finite = is_finite && is_known(cell.values);
+    if (!is_finite) return;
+    add(cell.s, [&](double) { return boost::numeric::median(cell.values); });
+    const double off = cell.length() * cell.radius();
+    force += off;
+    work += off;
+    value_square_ += off * cell.radius();
+  }
+
+  template <typename Value>
+  void add(const Interval& s, const Value& value) {
     const double length = s.upper() - s.lower();
     for (int q = 0; q < EdgeRule::size; ++q) {
       points_.push_back(s.lower() + length * edge_rule().points[q]);
       weights_.push_back(length * edge_rule().weights[q]);
-      values_.push_back(edge.value(field, points_.back()));
+      values_.push_back(value(points_.back()));
     }
   }
 
+  const Field& field_;
+  const EdgeLine& edge_;
+  const double largest_;
+  std::priority_queue<Cell> open_;
   std::vector<double> points_, weights_, values_;
   double value_square_ = 0;
 };
@@ -98,12 +146,15 @@ class Projection {
 
 TractionField::TractionField(const Problem& problem, const Mesh& mesh, Progress* progress) {
   const int d = components(problem.material);
-  CellBudget budget{100'000, progress};
+  CellBudget budget{kCells, progress};
+  const auto loads = [&](const BoundaryPart& part) {
+    return condition_on<Traction>(problem, part.name) || condition_on<Pressure>(problem, part.name);
+  };
+  std::size_t left = 0;
+  for (const BoundaryPart& part : mesh.boundary) left += loads(part) ? part.edges.size() : 0;
   for (const BoundaryPart& part : mesh.boundary) {
-    const auto found = problem.boundary.find(part.name);
-    if (found == problem.boundary.end()) continue;
-    const Condition& condition = found->second;
-    if (!std::holds_alternative<Traction>(condition) && !std::holds_alternative<Pressure>(condition)) continue;
+    if (!loads(part)) continue;
+    const Condition& condition = problem.boundary.at(part.name);
     double largest = 0;
     for (const int edge : part.edges) {
       const EdgeLine line(mesh, edge);
@@ -115,20 +166,22 @@ TractionField::TractionField(const Problem& problem, const Mesh& mesh, Progress*
       const double length = mesh.length(edge);
       ProjectedTraction projected{Eigen::MatrixXd::Zero(d, 3)};
       double rest_square = 0;
-      for (const Part& own : parts_of(condition, d, line.normal)) {
-        const Projection projection(own.field, line, largest, budget);
-        const double rest = projection.rest();
-        projected.balanced += own.vector * projection.nodes.transpose();
-        projected.uncertain_force += length * projection.force;
-        projected.uncertain_work += length * projection.work;
-        // Below this the rest is rounding.
-        if (rest > kEnclosureRounding * largest) rest_square += length * rest * rest;
-        const bool is_certain = is_known_on_edges(own.field) && std::isfinite(projection.work);
-        if (!is_certain && unmet_.empty())
-          unmet_.push_back(own.field.name() + (own.field.formula()
-                                                   ? " is not known to be finite near " + to_string(line.at(0.5))
-                                                   : " is a function that is known in single points only"));
-      }
+      budget.share(left--, [&](CellBudget& of_edge) {
+        for (const Part& own : parts_of(condition, d, line.normal)) {
+          const Projection projection(own.field, line, largest, of_edge);
+          const double rest = projection.rest();
+          projected.balanced += own.vector * projection.nodes.transpose();
+          projected.uncertain_force += length * projection.force;
+          projected.uncertain_work += length * projection.work;
+          // Below this the rest is rounding.
+          if (rest > kEnclosureRounding * largest) rest_square += length * rest * rest;
+          const bool is_certain = is_known_on_edges(own.field) && projection.is_finite;
+          if (!is_certain && unmet_.empty())
+            unmet_.push_back(own.field.formula()
+                                 ? not_known_to_be_finite(own.field, line.at(0.5))
+                                 : own.field.name() + " is a function that is known in single points only");
+        }
+      });
       projected.rest = std::sqrt(rest_square);
       projected_.emplace(edge, std::move(projected));
     }

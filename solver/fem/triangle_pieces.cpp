@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <queue>
 
 #include "formula/enclosure.hpp"
 
@@ -22,107 +23,191 @@ double area(const std::vector<Point>& polygon) {
   return sum;
 }
 
+/// The width of what is known; without a bound is worse than any.
+struct Doubt {
+  double unknown = 0, width = 0;
+
+  Doubt& operator+=(const Doubt& other) {
+    unknown += other.unknown;
+    width += other.width;
+    return *this;
+  }
+  auto operator<=>(const Doubt&) const = default;
+};
+
+Doubt doubt(const Interval& values, double scale, double share) {
+  if (!is_known(values)) return {share, 0};
+  return {0, share * (values.upper() - values.lower()) / scale};
+}
+
+/// What is most in doubt is cut first, so that a budget that is used up leaves the least.
 class Cutter {
  public:
   Cutter(std::span<const Field* const> fields, const Corners& corners, const Acceptance& accept,
          CellBudget& budget, const std::function<void(const TrianglePiece&)>& visit, const Settled& settled)
-      : fields_(fields), corners_(corners), accept_(accept), budget_(budget), visit_(visit), settled_(settled) {}
+      : fields_(fields), corners_(corners), accept_(accept), budget_(budget), visit_(visit), settled_(settled) {
+    for (int i = 0; i < 2; ++i)
+      box_[i] = {std::min({corners[0][i], corners[1][i], corners[2][i]}),
+                 std::max({corners[0][i], corners[1][i], corners[2][i]})};
+  }
 
-  void run() { cut(kReference, 0); }
+  void run() {
+    add(kReference, 0, 1);
+    for (; !open_.empty() && budget_.cells > 0; --budget_.cells) {
+      const Cell cell = open_.top();
+      open_.pop();
+      if (!cell.undecided || !cut_along(cell)) cut_in_halves(cell);
+    }
+    for (; !open_.empty(); open_.pop()) visit(open_.top());
+  }
 
  private:
   /// Deeper than this a cell is too small to matter or the formula has a pole.
   static constexpr int kDeepest = 60;
 
-  Point physical(const Point& reference) const {
-    return corners_[0] + reference.x() * (corners_[1] - corners_[0]) + reference.y() * (corners_[2] - corners_[0]);
-  }
-
-  struct Values {
+  struct Cell {
+    Corners corners;
+    int depth;
+    double share;
     std::vector<TaylorModel> models;
     std::optional<TaylorModel> undecided;
+    Doubt doubt;
+
+    bool operator<(const Cell& other) const { return doubt < other.doubt; }
   };
 
-  Values evaluate(const Corners& cell) const {
-    const Point a = physical(cell[0]), b = physical(cell[1]), c = physical(cell[2]);
+  /// Within the box of the triangle: rounding must not leave the domain of a formula.
+  Point physical(const Point& reference) const {
+    const Point x = corners_[0] + reference.x() * (corners_[1] - corners_[0]) +
+                    reference.y() * (corners_[2] - corners_[0]);
+    return {std::clamp(x.x(), box_[0].lower(), box_[0].upper()),
+            std::clamp(x.y(), box_[1].lower(), box_[1].upper())};
+  }
+
+  Corners physical(const Corners& cell) const {
+    return {physical(cell[0]), physical(cell[1]), physical(cell[2])};
+  }
+
+  void evaluate(Cell& cell) {
+    const auto [a, b, c] = physical(cell.corners);
     Enclosure<TaylorModel> enclosure{TaylorModel::linear({a.x(), b.x(), c.x()}),
                                      TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.), TaylorModel(0.)};
-    Values values;
     for (const Field* field : fields_)
-      values.models.push_back(field->formula() ? field->formula()->evaluate(enclosure)
-                                               : TaylorModel((*field)(Point::Zero())));
-    values.undecided = enclosure.undecided;
-    return values;
+      cell.models.push_back(field->formula() ? field->formula()->evaluate(enclosure)
+                                             : TaylorModel((*field)(Point::Zero())));
+    cell.undecided = enclosure.undecided;
+    if (scales_.empty())
+      for (const TaylorModel& model : cell.models) scales_.push_back(scale_of(range(model)));
+    for (std::size_t i = 0; i < scales_.size(); ++i)
+      cell.doubt += doubt(cell.models[i].remainder() * Interval(-1, 1), scales_[i], cell.share);
   }
 
-  void visit(const Corners& cell, Values&& values) {
-    visit_({cell, area(cell[0], cell[1], cell[2]), std::move(values.models)});
+  static double scale_of(const Interval& values) {
+    return is_known(values) && largest(values) > 0 ? largest(values) : 1;
   }
 
-  void cut(const Corners& cell, int depth) {
+  void visit(const Cell& cell) const { visit_({cell.corners, cell.share, cell.models}); }
+
+  /// `of_cell`: the share of what would else be cut.
+  void add(const Corners& corners, int depth, double of_cell) {
     budget_.look_around();
-    const double share = area(cell[0], cell[1], cell[2]);
-    if (share == 0 || (settled_ && settled_(cell, share))) return;
-    Values values = evaluate(cell);
-    if (accept_(values.models, share, share) || depth == kDeepest || budget_.cells <= 0) return visit(cell, std::move(values));
-    --budget_.cells;
-    if (values.undecided && cut_along(cell, values, depth)) return;
-    // The longest side.
-    int e = 0;
-    double longest = -1;
-    for (int k = 0; k < 3; ++k) {
-      const double length = (physical(cell[(k + 1) % 3]) - physical(cell[(k + 2) % 3])).squaredNorm();
-      if (length > longest) {
-        longest = length;
-        e = k;
-      }
-    }
-    const Point &top = cell[e], &a = cell[(e + 1) % 3], &b = cell[(e + 2) % 3], middle = (a + b) / 2;
-    cut({top, a, middle}, depth + 1);
-    cut({top, middle, b}, depth + 1);
+    Cell cell{corners, depth, area(corners[0], corners[1], corners[2]), {}, {}, {}};
+    if (cell.share == 0 || (settled_ && settled_(corners, cell.share))) return;
+    evaluate(cell);
+    if (accept_(cell.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest) return visit(cell);
+    open_.push(std::move(cell));
   }
 
-  /// Both sides of the line where the linear part of the argument is 0, and between them the strip where its sign
-  /// is not known. Returns false where that would be too wide.
-  bool cut_along(const Corners& cell, const Values& values, int depth) {
-    const TaylorModel& argument = *values.undecided;
-    const std::array<double, TaylorModel::kSize>& c = argument.coefficients();
-    double unknown = argument.remainder();
-    for (int k = 2; k <= TaylorModel::kDegree; ++k) unknown += argument.size_of_degree(k);
-    if (!std::isfinite(unknown) || (c[1] == 0 && c[2] == 0)) return false;
+  void add_all(const std::vector<Point>& polygon, int depth, double of_cell = 0) {
+    for (std::size_t i = 2; i < polygon.size(); ++i)
+      add(Corners{polygon[0], polygon[i - 1], polygon[i]}, depth, of_cell);
+  }
+
+  /// The two halves by the middle of side e.
+  static std::array<Corners, 2> halves(const Corners& cell, int e) {
+    const Point &top = cell[e], &a = cell[(e + 1) % 3], &b = cell[(e + 2) % 3], middle = (a + b) / 2;
+    return {Corners{top, a, middle}, Corners{top, middle, b}};
+  }
+
+  void cut_in_halves(const Cell& cell) {
+    const int side = tells_little(cell) ? side_of_least_doubt(cell) : longest_side(cell);
+    for (const Corners& half : halves(cell.corners, side)) add(half, cell.depth + 1, 0);
+  }
+
+  int longest_side(const Cell& cell) const {
+    const Corners corners = physical(cell.corners);
+    const auto length = [&](int e) { return (corners[(e + 1) % 3] - corners[(e + 2) % 3]).squaredNorm(); };
+    return std::ranges::max({0, 1, 2}, {}, length);
+  }
+
+  /// The polynomial of some field is no better than its values.
+  bool tells_little(const Cell& cell) const {
+    return std::ranges::any_of(cell.models, [](const TaylorModel& model) {
+      return model.degree() == 0 && model.remainder() > 0;
+    });
+  }
+
+  /// So that cells become long beside an edge along which the formula is not smooth.
+  int side_of_least_doubt(const Cell& cell) const {
+    const auto left = [&](int e) {
+      Doubt sum;
+      for (const Corners& half : halves(cell.corners, e))
+        for (std::size_t i = 0; i < fields_.size(); ++i)
+          if (const Formula* formula = fields_[i]->formula()) {
+            bool undecided = false;
+            sum += doubt(range(series_on_triangle(*formula, physical(half), 0, undecided)), scales_[i], cell.share);
+          }
+      return sum;
+    };
+    const std::array<Doubt, 3> all{left(0), left(1), left(2)};
+    const int longest = longest_side(cell), least = std::ranges::min({0, 1, 2}, {}, [&](int e) { return all[e]; });
+    return all[least] < all[longest] ? least : longest;
+  }
+
+  /// Both sides of the line where the argument is 0 but for what is not linear in it, and between them the strip where its
+  /// sign is not known. Returns false where that would be too wide.
+  bool cut_along(const Cell& cell) {
+    const TaylorModel::LinearPart part = cell.undecided->linear_part();
+    const auto& [a, b, c] = part.at_corners;
+    const double unknown = kMargin * (part.below + part.above) / 2, shift = (part.above - part.below) / 2;
+    if (!std::isfinite(unknown) || (a == b && a == c)) return false;
     // In the coordinates of the triangle.
+    const Corners& corners = cell.corners;
     Eigen::Matrix2d jacobian;
-    jacobian << cell[1] - cell[0], cell[2] - cell[0];
+    jacobian << corners[1] - corners[0], corners[2] - corners[0];
     const double determinant = jacobian(0, 0) * jacobian(1, 1) - jacobian(0, 1) * jacobian(1, 0);
-    const auto linear = [&](const Point& x) {
-      const Vector way = x - cell[0];
+    const auto linear = [&, &a = a, &b = b, &c = c](const Point& x) {
+      const Vector way = x - corners[0];
       const double u = (jacobian(1, 1) * way.x() - jacobian(0, 1) * way.y()) / determinant,
                    v = (jacobian(0, 0) * way.y() - jacobian(1, 0) * way.x()) / determinant;
-      return c[0] + c[1] * (u - 1. / 3) + c[2] * (v - 1. / 3);
+      return a + (b - a) * u + (c - a) * v + shift;
     };
-    const std::vector<Point> whole(cell.begin(), cell.end());
+    const std::vector<Point> whole(corners.begin(), corners.end());
     const auto above = [&](const Point& x) { return linear(x) - unknown; };
     const auto below = [&](const Point& x) { return -linear(x) - unknown; };
-    std::vector<Point> strip = clip(clip(whole, [&](const Point& x) { return -above(x); }),
-                                    [&](const Point& x) { return -below(x); });
-    const double share = area(cell[0], cell[1], cell[2]);
-    if (unknown > 0 && !accept_(values.models, area(strip), share)) return false;
-    for (const auto& part : {clip(whole, above), clip(whole, below)})
-      for (std::size_t i = 2; i < part.size(); ++i) cut({part[0], part[i - 1], part[i]}, depth + 1);
-    if (unknown == 0) return true;
-    for (std::size_t i = 2; i < strip.size(); ++i) {
-      const Corners own{strip[0], strip[i - 1], strip[i]};
-      if (area(own[0], own[1], own[2]) > 0) visit(own, evaluate(own));
-    }
+    const std::vector<Point> strip = clip(clip(whole, [&](const Point& x) { return -above(x); }),
+                                          [&](const Point& x) { return -below(x); });
+    if (unknown > 0 && area(strip) > kWidest * cell.share) return false;
+    add_all(clip(whole, above), cell.depth + 1);
+    add_all(clip(whole, below), cell.depth + 1);
+    if (unknown > 0) add_all(strip, cell.depth + 1, cell.share);
     return true;
   }
 
+  /// Of a cell: a strip that is wider is not worth the pieces beside it.
+  static constexpr double kWidest = 0.5;
+  /// So that the enclosures on these tell the sign, too.
+  static constexpr double kMargin = 1.25;
+
   std::span<const Field* const> fields_;
   const Corners& corners_;
+  std::array<Interval, 2> box_;
   const Acceptance& accept_;
   CellBudget& budget_;
   const std::function<void(const TrianglePiece&)>& visit_;
   const Settled& settled_;
+  std::vector<double> scales_;  ///< of the fields' values
+  std::priority_queue<Cell> open_;
 };
 
 }  // namespace

@@ -32,6 +32,15 @@ struct CellBudget {
   int cells;
   Progress* progress = nullptr;
 
+  /// Lets `use` have one of so many equal parts. What it leaves, the others have.
+  template <typename Use>
+  void share(std::size_t parts, const Use& use) {
+    const int own = cells / static_cast<int>(parts);
+    CellBudget part{own, progress};
+    use(part);
+    cells -= own - part.cells;
+  }
+
   /// Throws what the progress throws.
   void look_around() const {
     if (progress) progress->check();
@@ -53,8 +62,8 @@ Acceptance mean_remainder_below(double tolerance);
 using Settled = std::function<bool(const std::array<Point, 3>& cell, double share)>;
 
 /// Cuts a triangle into pieces until they are settled, accepted, or the budget is used up: along the lines where a comparison
-/// changes or a kink lies, as far as they are straight, else into halves. A straight jump leaves nothing over.
-/// All fields must be constants or formulas.
+/// changes or a kink lies, as far as they are straight, else into halves; first those of which least is known. A straight
+/// jump leaves nothing over. All fields must be constants or formulas.
 void for_each_piece(std::span<const Field* const> fields, const std::array<Point, 3>& corners,
                     const Acceptance& accept, CellBudget& budget,
                     const std::function<void(const TrianglePiece&)>& visit, const Settled& settled = {});

@@ -64,6 +64,10 @@ class Enclosure {
         return both(a, b);
       case Operation::either:
         return smooth(Operation::subtract, constant(1), both(inverted(a), inverted(b)));
+      case Operation::atan2:
+        // Beside the negative x axis it jumps where y changes its sign.
+        if (range(b).lower() < 0) (void)sign_of(a, 0);
+        return smooth(operation, a, b);
       default:
         return smooth(operation, a, b);
     }
@@ -105,8 +109,13 @@ class Enclosure {
       case Sign::negative:
         return least ? a : b;
       case Sign::unknown: {
+        // ½ (a + b) ∓ ½ |a − b|
+        const Value half = constant(0.5), mean = smooth(Operation::multiply, half, smooth(Operation::add, a, b)),
+                    rest = smooth(Operation::multiply, half, smooth(Operation::subtract, a, b)),
+                    size = rough_like(x, boost::numeric::abs(range(rest)));
         const Interval &p = range(a), &q = range(b);
-        return rough_like(x, least ? boost::numeric::min(p, q) : boost::numeric::max(p, q));
+        return narrowed(smooth(least ? Operation::subtract : Operation::add, mean, size),
+                        least ? boost::numeric::min(p, q) : boost::numeric::max(p, q));
       }
       default:
         return least ? b : a;
@@ -122,7 +131,7 @@ class Enclosure {
     const Sign sign = sign_of_difference(a, constant(high - 0.5));
     if (sign == Sign::positive) return constant(high);
     if (sign == Sign::negative && high == low + 1) return constant(low);
-    return rough_like(x, Interval(low, high));
+    return narrowed(smooth(Operation::add, a, rough_like(x, Interval(-0.5, 0.5))), Interval(low, high));
   }
 
   Value both(const Value& a, const Value& b) const {

@@ -35,6 +35,14 @@ Interval rising_from(double begin, const Interval& a, const Function& f) {
   return inside.lower() < begin ? kAnything : rising(inside, f);
 }
 
+/// 1 / a.
+Interval inverse(const Interval& a) {
+  if (a.lower() > 0 || a.upper() < 0) return 1. / a;
+  if (a.lower() == 0 && a.upper() > 0) return {1 / a.upper(), kAnything.upper()};
+  if (a.upper() == 0 && a.lower() < 0) return {kAnything.lower(), 1 / a.lower()};
+  return kAnything;
+}
+
 Interval sine(const Interval& a) {
   constexpr double turn = 2 * std::numbers::pi;
   if (!(a.upper() - a.lower() < turn)) return {-1, 1};
@@ -47,6 +55,25 @@ Interval sine(const Interval& a) {
 }
 
 }  // namespace
+
+Interval intersection(const Interval& a, const Interval& b) {
+  const double begin = std::max(a.lower(), b.lower()), end = std::min(a.upper(), b.upper());
+  return {std::min(begin, end), std::max(begin, end)};
+}
+
+Interval sum(const Interval& a, const Interval& b, double sign) {
+  const Interval other = sign * b, all = a + other;
+  const auto is_rounding = [](double end, double one, double two) {
+    return std::isfinite(end) && std::abs(end) <= kEnclosureRounding * (std::abs(one) + std::abs(two));
+  };
+  if (all.lower() > 0 || all.upper() < 0) return all;
+  return {is_rounding(all.lower(), a.lower(), other.lower()) ? 0 : all.lower(),
+          is_rounding(all.upper(), a.upper(), other.upper()) ? 0 : all.upper()};
+}
+
+Interval quotient(const Interval& a, const Interval& b) {
+  return a * inverse(b);
+}
 
 Interval range(Operation operation, const Interval& a) {
   switch (operation) {
@@ -99,13 +126,11 @@ Interval range(Operation operation, const Interval& a) {
 
 Interval angle(const Interval& y, const Interval& x) {
   constexpr double pi = std::numbers::pi;
-  const bool meets_origin = x.lower() <= 0 && x.upper() >= 0 && y.lower() <= 0 && y.upper() >= 0;
-  const bool meets_cut = x.lower() < 0 && y.lower() < 0 && y.upper() >= 0;
+  const bool meets_cut = x.lower() < 0 && y.lower() < 0 && y.upper() > 0;
   if (meets_cut || !is_known(x) || !is_known(y)) return {-pi, pi};
-  if (meets_origin) {
-    if (y.lower() >= 0) return {x.lower() >= 0 ? 0. : 0., x.lower() >= 0 ? pi / 2 : pi};
-    return {x.lower() >= 0 ? -pi / 2 : -pi, y.upper() > 0 ? pi / 2 : 0.};
-  }
+  if (y.upper() <= 0 && y.lower() < 0) return -angle(-y, x);
+  const bool meets_origin = x.lower() <= 0 && x.upper() >= 0 && y.lower() <= 0;
+  if (meets_origin) return {y.lower() < 0 ? -pi / 2 : 0, x.lower() < 0 ? pi : pi / 2};
   // Away from origin and cut the angle is largest and least in corners.
   const double angles[] = {std::atan2(y.lower(), x.lower()), std::atan2(y.lower(), x.upper()),
                            std::atan2(y.upper(), x.lower()), std::atan2(y.upper(), x.upper())};
@@ -115,13 +140,22 @@ Interval angle(const Interval& y, const Interval& x) {
 Interval power(const Interval& a, double exponent) {
   const bool is_whole = exponent == std::floor(exponent) && std::abs(exponent) <= 1000;
   if (is_whole && exponent >= 0) return boost::numeric::pow(a, static_cast<int>(exponent));
-  if (is_whole) {
-    const Interval below = boost::numeric::pow(a, static_cast<int>(-exponent));
-    return below.lower() <= 0 && below.upper() >= 0 ? kAnything : 1. / below;
-  }
+  if (is_whole) return inverse(boost::numeric::pow(a, static_cast<int>(-exponent)));
   const auto f = [&](double x) { return std::pow(x, exponent); };
   if (exponent > 0) return rising_from(0, a, f);
-  return a.lower() > 0 ? falling(a, f) : kAnything;
+  const Interval inside = from(0, a, largest(a));
+  return inside.lower() >= 0 && inside.upper() > 0 ? falling(inside, f) : kAnything;
+}
+
+/// Where a ≥ 0 it rises or falls in each of both: it is largest and least in corners, but that it tends to 0 beside
+/// 0^0 = 1.
+Interval power(const Interval& a, const Interval& exponent) {
+  if (exponent.lower() == exponent.upper()) return power(a, exponent.lower());
+  const Interval inside = from(0, a, largest(a));
+  if (!(inside.lower() >= 0) || !is_known(inside) || !is_known(exponent)) return kAnything;
+  if (inside.lower() == 0 && exponent.lower() < 0) return kAnything;
+  const Interval first = power(inside, exponent.lower()), second = power(inside, exponent.upper());
+  return boost::numeric::hull(inside.lower() == 0 ? boost::numeric::hull(first, Interval(0)) : first, second);
 }
 
 }  // namespace signorini

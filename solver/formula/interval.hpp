@@ -29,14 +29,25 @@ inline double largest(const Interval& a) {
   return std::max(std::abs(a.lower()), std::abs(a.upper()));
 }
 
+/// What lies in both, which hold the same values: where rounding has parted them, what lies between.
+Interval intersection(const Interval& a, const Interval& b);
+
+/// a + sign · b. An end that has the other sign than the rest by rounding alone, beside the numbers that it is made of,
+/// is zero: 1 − x is not negative where x is at most 1.
+Interval sum(const Interval& a, const Interval& b, double sign);
+
+/// a / b: half a line where b is 0 at one end.
+Interval quotient(const Interval& a, const Interval& b);
+
 /// The values of a function of one variable on an interval: the whole line where it is not defined on all of it.
 Interval range(Operation operation, const Interval& a);
 
-/// The angle of the points (x, y): all angles around the origin, and where the interval meets the negative x axis
-/// from both sides.
+/// The angle of the points (x, y): all angles around the origin, and where the intervals lie on both sides of the
+/// negative x axis.
 Interval angle(const Interval& y, const Interval& x);
 
-/// The values of a^α.
+/// The values of a^α and of a^b.
 Interval power(const Interval& a, double exponent);
+Interval power(const Interval& a, const Interval& exponent);
 
 }  // namespace signorini

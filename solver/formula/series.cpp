@@ -18,7 +18,8 @@ Series scaled(const Series& a, double factor) {
 
 Series sum(const Series& a, const Series& b, double sign) {
   Series all = filled(a);
-  for (int k = 0; k <= a.order(); ++k) all[k] = a[k] + sign * b[k];
+  all[0] = signorini::sum(a[0], b[0], sign);
+  for (int k = 1; k <= a.order(); ++k) all[k] = a[k] + sign * b[k];
   return all;
 }
 
@@ -46,7 +47,7 @@ Series with_values(const Series& a, const Interval& values) {
 }
 
 Series quotient(const Series& a, const Series& b) {
-  if (holds_zero(b[0])) return with_values(a, kAnything);
+  if (holds_zero(b[0])) return with_values(a, signorini::quotient(a[0], b[0]));
   Series all = filled(a);
   for (int k = 0; k <= a.order(); ++k) {
     Interval rest = a[k];
@@ -58,12 +59,30 @@ Series quotient(const Series& a, const Series& b) {
 
 /// From y' = a' / d and the values of y.
 Series integral(const Series& a, const Series& d, const Interval& values) {
-  if (holds_zero(d[0])) return with_values(a, values);
+  if (holds_zero(d[0])) {
+    Series rough = with_values(a, values);
+    if (a.order() > 0) rough[1] = signorini::quotient(a[1], d[0]);
+    return rough;
+  }
   Series all(a.order(), values);
   for (int k = 1; k <= a.order(); ++k) {
     Interval rest = double(k) * a[k];
     for (int j = 1; j < k; ++j) rest -= double(j) * all[j] * d[k - j];
     all[k] = rest / (double(k) * d[0]);
+  }
+  return all;
+}
+
+/// From the Taylor coefficients φ_m(α) a^(α − m) of a^α, where a reaches 0: they may be infinite there, of one sign.
+Series power_at_zero(const Series& a, double exponent, const Interval& values) {
+  Series all(a.order(), values), beyond = a, beyond_to_m(a.order(), 1);
+  beyond[0] = 0;
+  double number = 1;
+  for (int m = 1; m <= a.order(); ++m) {
+    number *= (exponent - m + 1) / m;
+    beyond_to_m = product(beyond_to_m, beyond);
+    const Interval own = number * signorini::power(a[0], exponent - m);
+    for (int k = m; k <= a.order(); ++k) all[k] += own * beyond_to_m[k];
   }
   return all;
 }
@@ -78,7 +97,7 @@ Series power(const Series& a, double exponent) {
     all[0] = values;
     return all;
   }
-  if (holds_zero(a[0])) return with_values(a, values);
+  if (holds_zero(a[0])) return is_known(values) ? power_at_zero(a, exponent, values) : with_values(a, values);
   Series all(a.order(), values);
   for (int k = 1; k <= a.order(); ++k) {
     Interval rest = 0;
@@ -100,8 +119,7 @@ Series exponential(const Series& a) {
 
 Series logarithm(const Series& a) {
   const Interval values = range(Operation::log, a[0]);
-  if (!(a[0].lower() > 0)) return with_values(a, values);
-  return integral(a, a, values);
+  return a[0].lower() >= 0 ? integral(a, a, values) : with_values(a, values);
 }
 
 /// s' = a' c, c' = ∓ a' s: sine and cosine, or the hyperbolic ones.
@@ -139,14 +157,14 @@ Series tangent(const Series& a, Operation operation, double sign) {
 
 Series plus(const Series& a, double constant) {
   Series all = a;
-  all[0] += constant;
+  all[0] = signorini::sum(a[0], constant, 1);
   return all;
 }
 
 /// y' = a' / √(c + sign a²)
 Series inverse_of_root(const Series& a, double constant, double sign, const Interval& values) {
   const Series d = plus(scaled(square(a), sign), constant);
-  if (!(d[0].lower() > 0)) return with_values(a, values);
+  if (!(d[0].lower() >= 0)) return with_values(a, values);
   return integral(a, power(d, 0.5), values);
 }
 
@@ -170,6 +188,11 @@ Series constant_like(const Series& a, double value) {
 
 Series rough_like(const Series& a, const Interval& values) {
   return Series::rough(a.order(), values);
+}
+
+Series narrowed(Series a, const Interval& values) {
+  a[0] = intersection(a[0], values);
+  return a;
 }
 
 Series hull(const Series& a, const Series& b) {
@@ -241,14 +264,14 @@ Series smooth(Operation operation, const Series& a, const Series& b) {
         return true;
       }();
       if (is_constant) return power(a, b[0].lower());
-      if (!(a[0].lower() > 0)) return with_values(a, kAnything);
+      if (!(a[0].lower() > 0)) return with_values(a, signorini::power(a[0], b[0]));
       return exponential(product(b, logarithm(a)));
     }
     case Operation::atan2: {
       // φ' = (x y' − y x') / (x² + y²), here for (y, x) = (a, b).
       const Interval values = angle(a[0], b[0]);
       const Series square_of_distance = sum(square(a), square(b), 1);
-      const bool crosses_cut = b[0].lower() < 0 && a[0].lower() < 0 && a[0].upper() >= 0;
+      const bool crosses_cut = b[0].lower() < 0 && a[0].lower() < 0 && a[0].upper() > 0;
       if (crosses_cut || holds_zero(square_of_distance[0])) return with_values(a, values);
       Series all(a.order(), values);
       for (int k = 1; k <= a.order(); ++k) {

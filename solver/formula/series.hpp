@@ -42,6 +42,9 @@ Series rough_like(const Series& a, const Interval& values);
 Series smooth(Operation operation, const Series& a);
 Series smooth(Operation operation, const Series& a, const Series& b);
 
+/// With values that are known to lie in an interval besides.
+Series narrowed(Series a, const Interval& values);
+
 /// What encloses both.
 Series hull(const Series& a, const Series& b);
 

@@ -123,21 +123,33 @@ int TaylorModel::degree() const {
   return 0;
 }
 
-double TaylorModel::size_of_degree(int k) const {
-  return sizes(c_)[k];
+/// The values at the corners of all up to degree 2. On edge e, t ∈ [0, 1], that is linear but for −b_e t (1 − t), b_e half
+/// its second derivative, and on the triangle but for −Σ b_e λ_i λ_j; the λ_i λ_j are at most ¼ each and add up to at most
+/// ⅓.
+TaylorModel::LinearPart TaylorModel::linear_part() const {
+  const auto at = [this](double u, double v) {
+    return c_[0] + c_[1] * u + c_[2] * v + c_[3] * u * u + c_[4] * u * v + c_[5] * v * v;
+  };
+  const auto most = [](double a, double b, double c) {
+    const double sum = std::max(0., a) + std::max(0., b) + std::max(0., c);
+    return std::min(sum / 4, std::max({0., a, b, c}) / 3);
+  };
+  const Sizes by_degree = sizes(c_);
+  double rest = remainder_;
+  for (int k = 3; k <= kDegree; ++k) rest += by_degree[k];
+  const double first = c_[3] - c_[4] + c_[5], second = c_[5], third = c_[3];
+  return {{at(-1. / 3, -1. / 3), at(2. / 3, -1. / 3), at(-1. / 3, 2. / 3)},
+          rest + most(first, second, third),
+          rest + most(-first, -second, -third)};
 }
 
 void TaylorModel::narrow() {
   remainder_ = bounded(remainder_);
-  const double a = c_[0] - (c_[1] + c_[2]) / 3, b = a + c_[1], c = a + c_[2];
-  const Sizes by_degree = sizes(c_);
-  double rest = remainder_;
-  for (int k = 2; k <= kDegree; ++k) rest += by_degree[k];
-  const double lower = std::min({a, b, c}) - rest, upper = std::max({a, b, c}) + rest;
+  const LinearPart part = linear_part();
+  const auto [least, most] = std::ranges::minmax(part.at_corners);
+  const double lower = least - part.below, upper = most + part.above;
   if (!std::isfinite(lower) || !std::isfinite(upper)) return;
-  // Both hold the values: where rounding has parted them, the hull does.
-  const double begin = std::max(lower, values_.lower()), end = std::min(upper, values_.upper());
-  values_ = Interval(std::min(begin, end), std::max(begin, end));
+  values_ = intersection(Interval(lower, upper), values_);
   // Where the polynomial tells less than the values by themselves, they stand alone.
   if (remainder_ > 0 && 2 * remainder_ >= values_.upper() - values_.lower() && is_known(values_))
     *this = rough(values_);
@@ -147,7 +159,7 @@ TaylorModel sum(const TaylorModel& a, const TaylorModel& b, double sign) {
   TaylorModel all;
   for (int i = 0; i < kSize; ++i) all.c_[i] = a.c_[i] + sign * b.c_[i];
   all.remainder_ = a.remainder_ + b.remainder_;
-  all.values_ = a.values_ + sign * b.values_;
+  all.values_ = signorini::sum(a.values_, b.values_, sign);
   all.narrow();
   return all;
 }
@@ -206,8 +218,25 @@ TaylorModel composed(Operation operation, const TaylorModel& a, double exponent)
   return all;
 }
 
+TaylorModel narrowed(TaylorModel a, const Interval& values) {
+  a.values_ = intersection(a.values_, values);
+  a.narrow();
+  return a;
+}
+
+/// The mean of both polynomials, which differ from it by half their difference.
 TaylorModel hull(const TaylorModel& a, const TaylorModel& b) {
-  return TaylorModel::rough(boost::numeric::hull(a.values(), b.values()));
+  TaylorModel mean, rest;
+  for (int i = 0; i < kSize; ++i) {
+    mean.c_[i] = (a.c_[i] + b.c_[i]) / 2;
+    rest.c_[i] = (a.c_[i] - b.c_[i]) / 2;
+  }
+  rest.values_ = kAnything;
+  rest.narrow();
+  mean.remainder_ = largest(rest.values_) + std::max(a.remainder_, b.remainder_);
+  mean.values_ = boost::numeric::hull(a.values_, b.values_);
+  mean.narrow();
+  return mean;
 }
 
 TaylorModel smooth(Operation operation, const TaylorModel& a) {
@@ -229,6 +258,7 @@ TaylorModel smooth(Operation operation, const TaylorModel& a, const TaylorModel&
     case Operation::power:
       if (is_constant && b.coefficients()[0] == 2) return product(a, a);
       if (is_constant) return composed(operation, a, b.coefficients()[0]);
+      if (!(a.values().lower() > 0)) return TaylorModel::rough(power(a.values(), b.values()));
       return composed(Operation::exp, product(b, composed(Operation::log, a, 1)), 1);
     case Operation::atan2: {
       // arctan of the quotient, turned such that it is away from the cut; the same as an angle at every point.
@@ -241,8 +271,9 @@ TaylorModel smooth(Operation operation, const TaylorModel& a, const TaylorModel&
         all = sum(TaylorModel(std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1), -1);
       else if (y.upper() < 0)
         all = sum(TaylorModel(-std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1), -1);
-      else if (x.upper() < 0 && y.lower() >= 0)
-        all = sum(TaylorModel(2 * std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, a, b), 1), 1);
+      else if (x.upper() < 0 && (y.lower() >= 0 || y.upper() <= 0))
+        all = sum(TaylorModel((y.lower() >= 0 ? 2 : -2) * std::asin(1.)),
+                  composed(Operation::atan, smooth(Operation::divide, a, b), 1), 1);
       return all;
     }
     default:

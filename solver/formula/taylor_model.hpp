@@ -30,12 +30,18 @@ class TaylorModel {
 
   /// No coefficient of a degree above this is but 0; 0 if there is none at all.
   int degree() const;
-  /// A bound of |polynomial's part of degree k|.
-  double size_of_degree(int k) const;
+  /// A linear function by its values at the corners, and what the model lies below and above it at most.
+  struct LinearPart {
+    std::array<double, 3> at_corners;
+    double below, above;
+  };
+  LinearPart linear_part() const;
 
   friend TaylorModel sum(const TaylorModel& a, const TaylorModel& b, double sign);
   friend TaylorModel product(const TaylorModel& a, const TaylorModel& b);
   friend TaylorModel composed(Operation operation, const TaylorModel& a, double exponent);
+  friend TaylorModel narrowed(TaylorModel a, const Interval& values);
+  friend TaylorModel hull(const TaylorModel& a, const TaylorModel& b);
 
  private:
   /// Takes the values that polynomial and remainder leave into account.
@@ -60,6 +66,9 @@ inline TaylorModel rough_like(const TaylorModel&, const Interval& values) {
 /// Of the operations that are smooth where they are defined: neither comparisons nor what has kinks.
 TaylorModel smooth(Operation operation, const TaylorModel& a);
 TaylorModel smooth(Operation operation, const TaylorModel& a, const TaylorModel& b);
+
+/// With values that are known to lie in an interval besides.
+TaylorModel narrowed(TaylorModel a, const Interval& values);
 
 /// What encloses both.
 TaylorModel hull(const TaylorModel& a, const TaylorModel& b);

@@ -48,6 +48,11 @@ double Field::checked(double value, const Point& x) const {
   throw InvalidProblem({{name_, "is not finite at " + to_string(x) + ": " + shortest(value)}});
 }
 
+std::string not_known_to_be_finite(const Field& field, const Point& x) {
+  return field.name() + " is not known to be finite near " + to_string(x) +
+         ": where it divides by what vanishes, or takes a root or a logarithm of it, give its values by ? :";
+}
+
 std::string to_string(const Point& x) {
   return "(" + shortest(x.x()) + ", " + shortest(x.y()) + ")";
 }

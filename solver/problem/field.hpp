@@ -92,6 +92,10 @@ class VectorField {
   std::vector<Field> components_;
 };
 
+/// Why nothing is guaranteed with a formula that has a pole near x, or may have one for all that its enclosures tell, and
+/// what would help.
+std::string not_known_to_be_finite(const Field& field, const Point& x);
+
 /// `(x, y)` with the fewest digits that tell the point from its neighbours.
 std::string to_string(const Point& x);
 

@@ -29,7 +29,8 @@ void expect_enough(const std::string& formula, const std::array<double, 3>& v) {
   const Field gap = problems::formula(formula);
   const std::array<double, 2> room{line.value(gap, 0) - v[0], line.value(gap, 1) - v[2]};
   if (room[0] < 0 || room[1] < 0) return;
-  const double taken = bubble_below_gap(gap, line, v, room);
+  CellBudget budget{4000};
+  const double taken = BelowGap{gap, line, v, room}.bubble(budget);
   ASSERT_TRUE(std::isfinite(taken)) << formula;
   double needed = 0;
   for (int i = 1; i < 20'000; ++i) needed = std::max(needed, least(gap, line, v, i / 20'000.));

@@ -86,10 +86,9 @@ void expect_close(const VectorField& load, const Corners& corners, double most) 
   const LoadProjection projection(problem, cut(corners, 0));
   const ProjectedLoad& projected = projection[0];
   ASSERT_TRUE(projected.jumps);
-  Observer indifferent;
-  Progress progress(indifferent, std::nullopt);
+  CellBudget budget{1000};
   const double least = by_elements<D>(load, projected, corners, 6),
-               bound = jump_oscillation<D>(load, projected, corners, progress);
+               bound = jump_oscillation<D>(load, projected, corners, budget);
   EXPECT_GE(bound, least);
   EXPECT_LE(bound, most * least);
   EXPECT_LE(bound, 0.9 * linear_remainder<D>(corners) * projected.unbalanced);

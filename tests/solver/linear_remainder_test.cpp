@@ -23,7 +23,8 @@ Mesh cut(const std::array<Point, 3>& corners, int times) {
                 times);
 }
 
-/// max over x of min zᵀ energy z, over z with loads z = x, xᵀ mass x = 1 and xᵀ mass linear = 0; its root.
+/// max over x of min zᵀ energy z, over z with loads z = x, xᵀ mass x = 1 and xᵀ mass linear = 0; its root. The loads of
+/// stresses have no rigid motions.
 template <int D>
 double largest_least(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& loads, const Eigen::MatrixXd& mass,
                      const Eigen::MatrixXd& linear) {
@@ -32,10 +33,13 @@ double largest_least(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& loads
   EXPECT_EQ(rank, loads.rows() - (D == 1 ? 1 : 3));  // all but the rigid motions of the whole
   const Eigen::MatrixXd q = qr.householderQ();
   const Eigen::MatrixXd idle = q.rightCols(rest), x_of = loads * q.leftCols(rank);
-  Eigen::FullPivLU<Eigen::MatrixXd> tested(linear.transpose() * mass * x_of);
-  tested.setThreshold(1e-9);  // the loads have no rigid motion already, but for rounding
-  const Eigen::MatrixXd orthogonal = tested.kernel();
-  EXPECT_EQ(orthogonal.cols(), loads.rows() - linear.cols());
+  Eigen::MatrixXd orthogonal = Eigen::MatrixXd::Identity(rank, rank);
+  if (linear.cols() > 0) {
+    Eigen::FullPivLU<Eigen::MatrixXd> tested(linear.transpose() * mass * x_of);
+    tested.setThreshold(1e-9);  // the loads have no rigid motion already, but for rounding
+    orthogonal = tested.kernel();
+    EXPECT_EQ(orthogonal.cols(), loads.rows() - linear.cols());
+  }
   const Eigen::MatrixXd loading = q.leftCols(rank) * orthogonal, x = x_of * orthogonal;
   const Eigen::MatrixXd own = idle.transpose() * energy * idle, mixed = idle.transpose() * energy * loading;
   const Eigen::MatrixXd least =
@@ -53,27 +57,76 @@ double constant_of_loads(const Mesh& mesh) {
   return largest_least<D>(stresses.energy, stresses.loads, stresses.mass, stresses.linear);
 }
 
+/// (q, q') of tractions that are linear on each of the edges.
+template <int D>
+Eigen::MatrixXd mass_of_tractions(const Mesh& mesh, const std::vector<int>& loaded) {
+  const Eigen::Index rows = 2 * D * static_cast<Eigen::Index>(loaded.size());
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(rows, rows);
+  for (std::size_t i = 0; i < loaded.size(); ++i)
+    for (int end = 0; end < 2; ++end)
+      for (int other = 0; other < 2; ++other)
+        for (int c = 0; c < D; ++c)
+          mass((2 * i + end) * D + c, (2 * i + other) * D + c) = mesh.length(loaded[i]) / (end == other ? 3 : 6);
+  return mass;
+}
+
 /// The same for a traction on the loaded edges, and no load.
 template <int D>
 double constant_of_tractions(const Mesh& mesh, const std::vector<int>& loaded) {
   const LocalEquilibrium<D> stresses(mesh, loaded);
   const Eigen::MatrixXd balanced = Eigen::FullPivLU<Eigen::MatrixXd>(stresses.loads).kernel();
   const Eigen::Index rows = 2 * D * static_cast<Eigen::Index>(loaded.size());
-  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(rows, rows), linear = Eigen::MatrixXd::Zero(rows, 2 * D);
+  Eigen::MatrixXd linear = Eigen::MatrixXd::Zero(rows, 2 * D);
   const Point origin = mesh.points[mesh.edges[loaded[0]][0]];
   for (std::size_t i = 0; i < loaded.size(); ++i)
     for (int end = 0; end < 2; ++end) {
       const double place = (mesh.points[mesh.edges[loaded[i]][end]] - origin).norm();
       for (int c = 0; c < D; ++c) {
         const Eigen::Index row = (2 * i + end) * D + c;
-        for (int other = 0; other < 2; ++other)
-          mass(row, (2 * i + other) * D + c) = mesh.length(loaded[i]) / (end == other ? 3 : 6);
         linear(row, c) = 1;
         linear(row, D + c) = place;
       }
     }
-  return largest_least<D>(balanced.transpose() * stresses.energy * balanced, balanced.topRows(rows), mass,
-                          linear);
+  return largest_least<D>(balanced.transpose() * stresses.energy * balanced, balanced.topRows(rows),
+                          mass_of_tractions<D>(mesh, loaded), linear);
+}
+
+/// The rigid motions of linear functions, LocalEquilibrium::linear: of a membrane the constants.
+template <int D>
+Eigen::MatrixXd motions(const Eigen::MatrixXd& linear) {
+  if constexpr (D == 1) return linear.leftCols(1);
+  Eigen::MatrixXd all(linear.rows(), 3);
+  all << linear.leftCols(2), linear.col(4) - linear.col(3);
+  return all;
+}
+
+/// The largest norm of the least stress for a load of norm 1 that is orthogonal to rigid motions. What it has beyond
+/// its linear part on each triangle is orthogonal there to linear functions.
+template <int D>
+double motion_constant_of_loads(const Mesh& mesh, double beyond) {
+  const LocalEquilibrium<D> stresses(mesh);
+  const Eigen::MatrixXd none(stresses.loads.rows(), 0);
+  const double known = largest_least<D>(stresses.energy, stresses.loads, stresses.mass, none);
+  return std::sqrt(known * known + beyond * beyond / 64);
+}
+
+/// The same for a traction of norm 1 on the loaded edges and the load that is a rigid motion and balances it.
+template <int D>
+double motion_constant_of_tractions(const Mesh& mesh, const std::vector<int>& loaded, double beyond) {
+  const LocalEquilibrium<D> stresses(mesh, loaded);
+  const Eigen::MatrixXd rigid = motions<D>(stresses.linear);
+  const Eigen::MatrixXd onto_rigid =
+      rigid * (rigid.transpose() * stresses.mass * rigid).inverse() * rigid.transpose() * stresses.mass;
+  Eigen::FullPivLU<Eigen::MatrixXd> beyond_motions(stresses.loads - onto_rigid * stresses.loads);
+  beyond_motions.setThreshold(1e-9);
+  const Eigen::MatrixXd balanced = beyond_motions.kernel();
+  const Eigen::Index rows = 2 * D * static_cast<Eigen::Index>(loaded.size());
+  const Eigen::MatrixXd tractions = balanced.topRows(rows), energy = balanced.transpose() * stresses.energy * balanced;
+  const Eigen::MatrixXd mass = mass_of_tractions<D>(mesh, loaded);
+  // The least energy for tractions x is xᵀ (T energy⁻¹ Tᵀ)⁻¹ x.
+  const Eigen::MatrixXd pliancy = tractions * energy.ldlt().solve(tractions.transpose());
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(pliancy.inverse(), mass, Eigen::EigenvaluesOnly);
+  return std::sqrt(eigen.eigenvalues().maxCoeff() + beyond * beyond / 8);
 }
 
 template <int D>
@@ -90,7 +143,10 @@ void expect_constants(const ReferenceTriangle& reference) {
     const std::vector<int>& edges = mesh.boundary[e].edges;
     ASSERT_EQ(edges.size(), 8u);
     expect_just_below(constant_of_tractions<D>(mesh, edges) / std::sqrt(1 - 1. / 8), constants.on_edges[e]);
+    expect_just_below(motion_constant_of_tractions<D>(mesh, edges, constants.on_edges[e]),
+                      constants.motion.on_edges[e]);
   }
+  expect_just_below(motion_constant_of_loads<D>(mesh, constants.load), constants.motion.on_triangle);
 }
 
 TEST(LinearRemainder, OfTheReferenceTrianglesIsWhatTheyAreSaidToHave) {

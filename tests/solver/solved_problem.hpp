@@ -23,7 +23,7 @@ struct SolvedProblem {
       if (row.unknown >= 0)
         coupling[discretization.traces.free_unknowns() + row.unknown] =
             clearance[&row - discretization.clearance.rows.data()];
-    return {discretization, solution, coupling};
+    return {discretization, solution, coupling, progress};
   }
 
   Problem problem;
