@@ -52,14 +52,10 @@ bool turns_slightly(const std::vector<PointConstraint>& constraints, const Mater
   });
 }
 
-/// The values of a field at s = 0 or 1 as they are on this edge.
-Interval values_near_end(const Field& field, const EdgeLine& line, double s) {
-  constexpr double hardly = 1e-9;
-  return series_on(field, line, s == 0 ? Interval(0, hardly) : Interval(1 - hardly, 1), 0)[0];
-}
-
-bool jumps(double value, const Interval& limit, double rounding) {
-  return is_known(limit) && !(limit.lower() - rounding <= value && value <= limit.upper() + rounding);
+/// The values beside an end, s = 0 or 1, do not tend to the one in it.
+bool jumps_at_end(const Field& field, const EdgeLine& line, double s, double rounding) {
+  const Interval values = values_at_end(field, line, s, rounding);
+  return !(values.lower() <= line.value(field, s) && line.value(field, s) <= values.upper());
 }
 
 /// Of the Taylor coefficients of this order, in s, on the whole edge: infinite where the field is not smooth.
@@ -253,9 +249,7 @@ double AdmissibleDisplacement::gap_at(const ContactEdge& contact, double s) cons
   const EdgeLine line(problem_.mesh, contact.edge);
   const double value = line.value(own, s);
   if (s > 0 && s < 1) return value;
-  const Interval limit = values_near_end(own, line, s);
-  const double rounding = kSmall * std::max(std::abs(value), scale_);
-  return jumps(value, limit, rounding) ? limit.lower() : value;
+  return values_at_end(own, line, s, kSmall * std::max(std::abs(value), scale_)).lower();
 }
 
 void AdmissibleDisplacement::refuse(const std::string& reason) {
@@ -396,7 +390,7 @@ void AdmissibleDisplacement::fix(const BoundaryPart& part, const Fixed& fixed) {
     add_lift(edge, [&](double s) -> Eigen::VectorXd { return value(s) - on_edge(edge, s); });
     for (const Field& field : fixed.value.fields()) {
       for (const double s : {0., 1.})
-        if (jumps(line.value(field, s), values_near_end(field, line, s), kSmall * scale_))
+        if (jumps_at_end(field, line, s, kSmall * scale_))
           refuse(field.name() + " jumps at " + to_string(line.at(s)));
       add_rest(edge, line, field);
     }

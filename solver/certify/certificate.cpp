@@ -1,6 +1,7 @@
 #include "certify/certificate.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -83,10 +84,16 @@ void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
   all.insert(all.end(), some.begin(), some.end());
 }
 
-}  // namespace
+/// The data are not what they should be in a point that the discrete problem does not ask.
+Certificate without_bound(const std::vector<Fault>& faults) {
+  Certificate certificate;
+  certificate.bound.value = std::numeric_limits<double>::infinity();
+  for (const Fault& fault : faults) certificate.bound.unmet.push_back(fault.where + " " + fault.detail);
+  return certificate;
+}
 
-Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
-                    Progress& progress) {
+Certificate certify_sound_data(const Discretization& problem, const Solution& solution,
+                               const Eigen::VectorXd& coupling, Progress& progress) {
   const Eigen::VectorXd clearance =
       problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
   AdmissiblePair pair{{problem, solution, coupling, progress}, {problem, solution.stress, clearance}};
@@ -139,8 +146,20 @@ Certificate certify(const Discretization& problem, const Solution& solution, con
   return certificate;
 }
 
+}  // namespace
+
+Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
+                    Progress& progress) {
+  try {
+    return certify_sound_data(problem, solution, coupling, progress);
+  } catch (const InvalidProblem& unsound) {
+    return without_bound(unsound.faults());
+  }
+}
+
 void move_to(const Eigen::MatrixXd& stress, const Discretization& problem, const Solution& solution,
              Certificate& certificate, Progress& progress) {
+  if (!certificate.has_bound()) return;
   constexpr double tolerance = 1e-4;
   const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
   const Eigen::VectorXd way = energy_norm_squares(problem, stress - solution.stress, laws, progress);

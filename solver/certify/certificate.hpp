@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "fem/discretization.hpp"
 #include "progress.hpp"
 #include "solution.hpp"
@@ -8,15 +10,18 @@ namespace signorini {
 
 /// The error bound with its share in every triangle.
 struct Certificate {
-  ErrorBound bound;
+  ErrorBound bound;  ///< not finite if there is none
   /// Entry t: the square of the energy norm that triangle t adds to the bound: the guide for refinement.
   Eigen::VectorXd squares;
   /// Solution::admissible_pressure.
   std::vector<EdgePressure> pressure;
+
+  bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }
 };
 
 /// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium with Πf and Πt
-/// whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from().
+/// whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from(). Data that turn out to be unsound in a
+/// point that the discrete problem does not ask leave it without a bound.
 ///
 /// `coupling`: the unknowns of the trace space.
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,

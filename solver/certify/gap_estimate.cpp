@@ -5,8 +5,8 @@
 namespace signorini {
 namespace {
 
-/// The middles of the edges: in the centroid the gradient of v is better than elsewhere.
-const std::vector<Point> kPoints{Point(0.5, 0.5), Point(0, 0.5), Point(0.5, 0)};
+/// Not the centroid, in which the gradient of v is better than elsewhere, nor the edges, on which the law may jump.
+const std::vector<Point> kPoints{Point(1. / 6, 1. / 6), Point(2. / 3, 1. / 6), Point(1. / 6, 2. / 3)};
 
 template <int D>
 Tensor<D> symmetric(Tensor<D> tensor) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <unordered_map>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct LawPiece {
   std::array<double, kOrders> errors{};
   double softest = 0;   ///< C is at most this; infinite where E is not known to be positive definite
   double stiffest = 0;  ///< E is at most this
+  bool jumps = false;   ///< or has a kink, or may have one
+
+  bool is_known() const { return std::isfinite(errors.back() + softest + stiffest); }
 
   /// The degree of the cheapest rule for squares of fields of a degree that is off by no more than the
   /// tolerance, or hardly more than the best.
@@ -32,10 +36,14 @@ struct LawPiece {
   }
 };
 
+/// For the errors of the highest order.
+struct LawTolerance {
+  double smooth, of_jumps;
+};
+
 /// Cuts a triangle for the fields of the material; a constant one is a single piece without error.
-/// `tolerance`: for the errors of the highest order.
 std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners,
-                                 double tolerance, CellBudget& budget);
+                                 const LawTolerance& tolerance, CellBudget& budget);
 
 /// The law of a problem on all triangles of its mesh, which must outlive it. The pieces of a triangle are
 /// found again whenever they are asked for: hardly any work beside the integrals over them, but more memory
@@ -60,7 +68,7 @@ class LawOnMesh {
   Progress& progress_;
   double tolerance_;
   std::vector<LawPiece> whole_;
-  std::unordered_map<int, double> tolerances_;  ///< of triangles that are cut
+  std::unordered_map<int, LawTolerance> tolerances_;  ///< of triangles that are cut
   std::vector<std::string> unmet_;
 };
 

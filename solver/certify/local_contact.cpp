@@ -21,9 +21,10 @@ Problem with_cut(const Problem& whole, const Condition& on_cut) {
 
 }  // namespace
 
-LocalContact::LocalContact(const Problem& whole, const Patch& patch, const Condition& on_cut,
+LocalContact::LocalContact(const Discretization& whole, const Patch& patch, const Condition& on_cut,
                            Progress& progress)
-    : problem_(with_cut(whole, on_cut)), discretization_(problem_, *patch.mesh) {
+    : problem_(with_cut(whole.problem, on_cut)), discretization_(problem_, *patch.mesh) {
+  discretization_.draw_near(whole.clearance.reach);
   const bool held = held_by_contact_alone(discretization_);
   const HybridSystem system = assemble(discretization_, progress);
   const Operator made(patch.mesh, discretization_.clearance, system.matrix, held, progress);
@@ -35,6 +36,8 @@ LocalContact::LocalContact(const Problem& whole, const Patch& patch, const Condi
   solution_.stress = std::move(all.fields.stress);
   solution_.displacement = std::move(all.fields.displacement);
   coupling_ = std::move(all.coupling);
+  if (discretization_.clearance.is_touched_too_early(found))
+    throw SolveError("the patch meets the foundation where the whole does not");
   clearance_ = discretization_.clearance.clearance(found);
 }
 

@@ -7,10 +7,10 @@
 namespace signorini {
 
 /// The contact problem of a membrane on a patch, solved exactly: that of the whole with a condition on the
-/// cut besides. Throws SolveError, NotPositiveDefinite and Cancelled.
+/// cut besides, and with the foundation as near as there. Throws SolveError, NotPositiveDefinite and Cancelled.
 class LocalContact {
  public:
-  LocalContact(const Problem& whole, const Patch& patch, const Condition& on_cut, Progress& progress);
+  LocalContact(const Discretization& whole, const Patch& patch, const Condition& on_cut, Progress& progress);
 
   const Discretization& problem() const { return discretization_; }
   /// Only stress and displacement.
@@ -21,7 +21,7 @@ class LocalContact {
 
  private:
   const Problem problem_;
-  const Discretization discretization_;
+  Discretization discretization_;
   Solution solution_;
   Eigen::VectorXd coupling_, clearance_;
   bool is_balanced_ = false;

@@ -74,8 +74,8 @@ Eigen::MatrixXd on_patch(const Discretization& whole, const Eigen::MatrixXd& str
 PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stress, const AdmissiblePair& pair,
                        Patch patch, Progress& progress)
     : patch_(std::move(patch)),
-      held_(whole.problem, patch_, displacement_on_cut(whole, pair.v, patch_), progress),
-      loaded_(whole.problem, patch_, traction_on_cut(whole, stress, pair, patch_), progress),
+      held_(whole, patch_, displacement_on_cut(whole, pair.v, patch_), progress),
+      loaded_(whole, patch_, traction_on_cut(whole, stress, pair, patch_), progress),
       stress_(on_patch(whole, stress, patch_)),
       change_(loaded_.solution().stress - stress_),
       first_(first_pair(progress)),

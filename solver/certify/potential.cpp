@@ -40,13 +40,17 @@ class Potential {
     return values;
   }
 
+  /// Of the triangle that was asked for last, as it resists most of what it may be strained by.
+  double stiffness() const { return TriangleRule::size / softness_; }
+
  private:
   Eigen::Matrix<double, 2 * D, 3> gradient_at_corners(int t, const AffineMap& map) {
     Eigen::Matrix<double, 2 * D, 3> gradient = Eigen::Matrix<double, 2 * D, 3>::Zero();
+    softness_ = 0;
     for (int q = 0; q < TriangleRule::size; ++q) {
-      const Tensor<D> strain =
-          law_(map(triangle_rule().points[q])).compliance * stress_(q, map, solution_.stress.col(t));
-      gradient += strain * weights_.col(q).transpose();
+      const TensorMap<D>& compliance = law_(map(triangle_rule().points[q])).compliance;
+      gradient += compliance * stress_(q, map, solution_.stress.col(t)) * weights_.col(q).transpose();
+      softness_ += compliance.trace();
     }
     if constexpr (D == 2)
       for (int z = 0; z < 3; ++z) {
@@ -69,23 +73,26 @@ class Potential {
   StressValues<D> stress_;
   LawField<D> law_;
   CornerWeights weights_;
+  double softness_ = 0;
 };
 
+/// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the more.
 template <int D>
 Eigen::MatrixXd average(const Discretization& problem, const Solution& solution) {
   Potential<D> potential(problem, solution);
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(D, problem.mesh.points.size());
-  Eigen::VectorXd triangles_at = Eigen::VectorXd::Zero(problem.mesh.points.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(problem.mesh.points.size());
   for (int t = 0; t < problem.triangles(); ++t) {
     const Eigen::Matrix<double, D, 3> corners = potential.at_corners(t);
     for (int z = 0; z < 3; ++z) {
       const int point = problem.mesh.triangles[t][z];
-      values.col(point) += corners.col(z);
-      ++triangles_at[point];
+      values.col(point) += potential.stiffness() * corners.col(z);
+      weights[point] += potential.stiffness();
     }
   }
   // Points without a triangle have nothing to average.
-  for (Eigen::Index p = 0; p < values.cols(); ++p) values.col(p) /= std::max(1., triangles_at[p]);
+  for (Eigen::Index p = 0; p < values.cols(); ++p)
+    if (weights[p] > 0) values.col(p) /= weights[p];
   return values;
 }
 

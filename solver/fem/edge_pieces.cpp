@@ -103,6 +103,17 @@ Series series_on(const Field& field, const EdgeLine& edge, const Interval& s, in
   return all;
 }
 
+Interval values_at_end(const Field& field, const EdgeLine& edge, double s, double rounding) {
+  const Formula* formula = field.formula();
+  if (!formula) return edge.value(field, s);
+  constexpr double hardly = 1e-9;
+  const Interval beside = enclose(*formula, edge, s == 0 ? Interval(0, hardly) : Interval(1 - hardly, 1), 0)[0];
+  const auto [x, normal] = edge.mesh.on_boundary(edge.edge, s);
+  const double value = (*formula)(x.x(), x.y(), normal.x(), normal.y());
+  if (!is_known(beside)) return std::isfinite(value) ? Interval(value) : kAnything;
+  return beside.lower() - rounding <= value && value <= beside.upper() + rounding ? Interval(value) : beside;
+}
+
 std::vector<EdgePiece> pieces_on_edge(const Field& field, const EdgeLine& edge, double tolerance,
                                       CellBudget& budget) {
   if (!field.formula()) return {interpolated(field, edge)};

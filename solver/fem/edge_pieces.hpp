@@ -47,6 +47,10 @@ std::vector<EdgePiece> pieces_on_edge(const Field& field, const EdgeLine& edge, 
 /// The Taylor coefficients of the field in s, for all s from begin to end. Not for functions.
 Series series_on(const Field& field, const EdgeLine& edge, const Interval& s, int order);
 
+/// The value of the field in an end of the edge, s = 0 or 1; where it jumps there, or has no value, those that it has
+/// beside the end on this edge. A difference of less than `rounding` is no jump.
+Interval values_at_end(const Field& field, const EdgeLine& edge, double s, double rounding);
+
 /// All that can be told of the field: it is a constant, a formula, or says that it is quadratic.
 inline bool is_known_on_edges(const Field& field) {
   return field.is_constant() || field.formula() || field.is_quadratic_on_edges();

@@ -137,7 +137,7 @@ class Sampler {
     const Field* fields[] = {&field};
     for_each_piece(
         fields, corners,
-        [&](const std::vector<TaylorModel>& models, double share, double of_cell) {
+        [&](const Models& models, double share, double of_cell) {
           return models[0].remainder() * share <= tolerance_now() * std::sqrt(of_cell);
         },
         budget, [&](const TrianglePiece& piece) { add_piece(piece); },

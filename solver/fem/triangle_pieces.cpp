@@ -23,6 +23,42 @@ double area(const std::vector<Point>& polygon) {
   return sum;
 }
 
+/// The models on a triangle, and what is not decided on it.
+struct Values {
+  Models models;
+  std::optional<TaylorModel> undecided;
+};
+
+using Assumptions = std::vector<Enclosure<TaylorModel>::Assumption>;
+
+Values evaluate(std::span<const Field* const> fields, const Corners& corners, const Assumptions& assumptions) {
+  const auto& [a, b, c] = corners;
+  Enclosure<TaylorModel> enclosure{TaylorModel::linear({a.x(), b.x(), c.x()}),
+                                   TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.), TaylorModel(0.),
+                                   assumptions};
+  Values values;
+  for (const Field* field : fields)
+    values.models.push_back(field->formula() ? field->formula()->evaluate(enclosure)
+                                             : TaylorModel((*field)(Point::Zero())));
+  values.undecided = enclosure.undecided;
+  return values;
+}
+
+void add_branches(std::span<const Field* const> fields, const Corners& corners, Assumptions& assumptions,
+                  std::vector<Models>& branches) {
+  constexpr std::size_t most_assumptions = 3;
+  Values values = evaluate(fields, corners, assumptions);
+  if (!values.undecided || assumptions.size() == most_assumptions) {
+    branches.push_back(std::move(values.models));
+    return;
+  }
+  for (const bool is_positive : {true, false}) {
+    assumptions.push_back({*values.undecided, is_positive});
+    add_branches(fields, corners, assumptions, branches);
+    assumptions.pop_back();
+  }
+}
+
 /// The width of what is known; without a bound is worse than any.
 struct Doubt {
   double unknown = 0, width = 0;
@@ -56,7 +92,7 @@ class Cutter {
     for (; !open_.empty() && budget_.cells > 0; --budget_.cells) {
       const Cell cell = open_.top();
       open_.pop();
-      if (!cell.undecided || !cut_along(cell)) cut_in_halves(cell);
+      if (!cell.values.undecided || !cut_along(cell)) cut_in_halves(cell);
     }
     for (; !open_.empty(); open_.pop()) visit(open_.top());
   }
@@ -69,8 +105,7 @@ class Cutter {
     Corners corners;
     int depth;
     double share;
-    std::vector<TaylorModel> models;
-    std::optional<TaylorModel> undecided;
+    Values values;
     Doubt doubt;
 
     bool operator<(const Cell& other) const { return doubt < other.doubt; }
@@ -89,32 +124,27 @@ class Cutter {
   }
 
   void evaluate(Cell& cell) {
-    const auto [a, b, c] = physical(cell.corners);
-    Enclosure<TaylorModel> enclosure{TaylorModel::linear({a.x(), b.x(), c.x()}),
-                                     TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.), TaylorModel(0.)};
-    for (const Field* field : fields_)
-      cell.models.push_back(field->formula() ? field->formula()->evaluate(enclosure)
-                                             : TaylorModel((*field)(Point::Zero())));
-    cell.undecided = enclosure.undecided;
+    cell.values = signorini::evaluate(fields_, physical(cell.corners), {});
+    const Models& models = cell.values.models;
     if (scales_.empty())
-      for (const TaylorModel& model : cell.models) scales_.push_back(scale_of(range(model)));
+      for (const TaylorModel& model : models) scales_.push_back(scale_of(range(model)));
     for (std::size_t i = 0; i < scales_.size(); ++i)
-      cell.doubt += doubt(cell.models[i].remainder() * Interval(-1, 1), scales_[i], cell.share);
+      cell.doubt += doubt(models[i].remainder() * Interval(-1, 1), scales_[i], cell.share);
   }
 
   static double scale_of(const Interval& values) {
     return is_known(values) && largest(values) > 0 ? largest(values) : 1;
   }
 
-  void visit(const Cell& cell) const { visit_({cell.corners, cell.share, cell.models}); }
+  void visit(const Cell& cell) const { visit_({cell.corners, cell.share, cell.values.models}); }
 
   /// `of_cell`: the share of what would else be cut.
   void add(const Corners& corners, int depth, double of_cell) {
     budget_.look_around();
-    Cell cell{corners, depth, area(corners[0], corners[1], corners[2]), {}, {}, {}};
+    Cell cell{corners, depth, area(corners[0], corners[1], corners[2]), {}, {}};
     if (cell.share == 0 || (settled_ && settled_(corners, cell.share))) return;
     evaluate(cell);
-    if (accept_(cell.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest) return visit(cell);
+    if (accept_(cell.values.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest) return visit(cell);
     open_.push(std::move(cell));
   }
 
@@ -142,7 +172,7 @@ class Cutter {
 
   /// The polynomial of some field is no better than its values.
   bool tells_little(const Cell& cell) const {
-    return std::ranges::any_of(cell.models, [](const TaylorModel& model) {
+    return std::ranges::any_of(cell.values.models, [](const TaylorModel& model) {
       return model.degree() == 0 && model.remainder() > 0;
     });
   }
@@ -167,7 +197,7 @@ class Cutter {
   /// Both sides of the line where the argument is 0 but for what is not linear in it, and between them the strip where its
   /// sign is not known. Returns false where that would be too wide.
   bool cut_along(const Cell& cell) {
-    const TaylorModel::LinearPart part = cell.undecided->linear_part();
+    const TaylorModel::LinearPart part = cell.values.undecided->linear_part();
     const auto& [a, b, c] = part.at_corners;
     const double unknown = kMargin * (part.below + part.above) / 2, shift = (part.above - part.below) / 2;
     if (!std::isfinite(unknown) || (a == b && a == c)) return false;
@@ -236,8 +266,15 @@ Series series_on_triangle(const Formula& formula, const Corners& corners, int or
   return series;
 }
 
+std::vector<Models> branches_on_triangle(std::span<const Field* const> fields, const Corners& corners) {
+  Assumptions assumptions;
+  std::vector<Models> branches;
+  add_branches(fields, corners, assumptions, branches);
+  return branches;
+}
+
 Acceptance mean_remainder_below(double tolerance) {
-  return [tolerance](const std::vector<TaylorModel>& models, double share, double of_cell) {
+  return [tolerance](const Models& models, double share, double of_cell) {
     double remainder = 0;
     for (const TaylorModel& own : models) remainder += own.remainder();
     return remainder * share <= tolerance * std::sqrt(of_cell);

@@ -14,11 +14,18 @@ namespace signorini {
 /// x_T its centroid. `undecided` tells whether a jump or a kink may lie in it.
 Series series_on_triangle(const Formula& formula, const std::array<Point, 3>& corners, int order, bool& undecided);
 
+/// The models of fields, constants or formulas, on a cell.
+using Models = std::vector<TaylorModel>;
+
+/// A list of models for each way in which that may be decided, the same for all fields, which is not on the cell: in
+/// (almost) every point the fields have the values of one of them together. What would take many is not decided.
+std::vector<Models> branches_on_triangle(std::span<const Field* const> fields, const std::array<Point, 3>& corners);
+
 /// A part of a triangle on which formulas are polynomials but for a remainder.
 struct TrianglePiece {
   std::array<Point, 3> corners;  ///< in the reference coordinates of the triangle
   double share = 1;              ///< of the triangle's area
-  std::vector<TaylorModel> models;  ///< an entry a field; in the reference coordinates of the piece
+  Models models;  ///< an entry a field; in the reference coordinates of the piece
 
   /// From the reference coordinates of the piece to those of the triangle.
   Point operator()(const Point& own) const {
@@ -53,7 +60,7 @@ std::vector<Point> clip(const std::vector<Point>& polygon, const std::function<d
 /// Whether a part of a cell may stay as it is, with these models of the fields: `share` of the triangle is the
 /// part's, `of_cell` that of the cell which would else be cut. Cells along a curve are 2ⁿ of the size 2⁻ⁿ: the
 /// sum over them is that of a single one if each is allowed the root of its share.
-using Acceptance = std::function<bool(const std::vector<TaylorModel>& models, double share, double of_cell)>;
+using Acceptance = std::function<bool(const Models& models, double share, double of_cell)>;
 
 /// The means of the remainders add up to about `tolerance`, a value of the fields.
 Acceptance mean_remainder_below(double tolerance);

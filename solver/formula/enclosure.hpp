@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "formula/formula.hpp"
 #include "formula/interval.hpp"
@@ -13,10 +14,19 @@ namespace signorini {
 ///
 /// Where a comparison is not decided on the cell, or a kink may lie in it, the result encloses all cases, and
 /// `undecided` is what changes its sign there: to cut the cell where it is 0 decides it.
+///
+/// What is assumed of the sign of such an argument holds for all formulas that are evaluated: their values are then
+/// those in the points of the cell where it is so, as they belong together.
 template <typename Value>
 class Enclosure {
  public:
+  struct Assumption {
+    Value argument;
+    bool is_positive;
+  };
+
   Value x, y, nx, ny;
+  std::vector<Assumption> assumptions = {};
   std::optional<Value> undecided = std::nullopt;
 
   Value constant(double value) const { return constant_like(x, value); }
@@ -26,9 +36,9 @@ class Enclosure {
       case Operation::abs:
         switch (sign_of(a, 0)) {
           case Sign::positive:
-            return a;
+            return narrowed(a, boost::numeric::abs(range(a)));
           case Sign::negative:
-            return smooth(Operation::negate, a);
+            return narrowed(smooth(Operation::negate, a), boost::numeric::abs(range(a)));
           case Sign::zero:
             return constant(0);
           default:
@@ -91,6 +101,11 @@ class Enclosure {
     if (largest(values) <= kEnclosureRounding * scale) return Sign::zero;
     if (values.lower() >= -rounding) return Sign::positive;
     if (values.upper() <= rounding) return Sign::negative;
+    for (const Assumption& own : assumptions) {
+      if (is_same(own.argument, a)) return own.is_positive ? Sign::positive : Sign::negative;
+      if (is_same(own.argument, smooth(Operation::negate, a)))
+        return own.is_positive ? Sign::negative : Sign::positive;
+    }
     if (!undecided) undecided = a;
     return Sign::unknown;
   }
@@ -105,20 +120,20 @@ class Enclosure {
   }
 
   Value extreme(const Value& a, const Value& b, bool least) {
+    const Interval values =
+        least ? boost::numeric::min(range(a), range(b)) : boost::numeric::max(range(a), range(b));
     switch (sign_of_difference(a, b)) {
       case Sign::negative:
-        return least ? a : b;
+        return narrowed(least ? a : b, values);
       case Sign::unknown: {
         // ½ (a + b) ∓ ½ |a − b|
         const Value half = constant(0.5), mean = smooth(Operation::multiply, half, smooth(Operation::add, a, b)),
                     rest = smooth(Operation::multiply, half, smooth(Operation::subtract, a, b)),
                     size = rough_like(x, boost::numeric::abs(range(rest)));
-        const Interval &p = range(a), &q = range(b);
-        return narrowed(smooth(least ? Operation::subtract : Operation::add, mean, size),
-                        least ? boost::numeric::min(p, q) : boost::numeric::max(p, q));
+        return narrowed(smooth(least ? Operation::subtract : Operation::add, mean, size), values);
       }
       default:
-        return least ? b : a;
+        return narrowed(least ? b : a, values);
     }
   }
 

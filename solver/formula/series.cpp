@@ -199,6 +199,15 @@ Series hull(const Series& a, const Series& b) {
   return Series::rough(a.order(), boost::numeric::hull(a[0], b[0]));
 }
 
+bool is_same(const Series& a, const Series& b) {
+  const auto is_equal = [](const Interval& p, const Interval& q) {
+    return p.lower() == q.lower() && p.upper() == q.upper();
+  };
+  for (int k = 0; k <= a.order(); ++k)
+    if (!is_equal(a[k], b[k])) return false;
+  return true;
+}
+
 Series smooth(Operation operation, const Series& a) {
   const Interval values = range(operation, a[0]);
   switch (operation) {

@@ -48,4 +48,6 @@ Series narrowed(Series a, const Interval& values);
 /// What encloses both.
 Series hull(const Series& a, const Series& b);
 
+bool is_same(const Series& a, const Series& b);
+
 }  // namespace signorini

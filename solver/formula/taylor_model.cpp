@@ -185,7 +185,7 @@ TaylorModel product(const TaylorModel& a, const TaylorModel& b) {
   return all;
 }
 
-/// φ(c + δ) = Σ φ_k δ^k + φ_{n+1}(ξ) δ^{n+1} with the Taylor coefficients φ_k in c and ξ among the values.
+/// φ(c + δ) = Σ φ_k δ^k + φ_{n+1}(ξ) δ^{n+1} with the Taylor coefficients φ_k in c and ξ between c and the values.
 TaylorModel composed(Operation operation, const TaylorModel& a, double exponent) {
   const auto coefficients = [&](int order, const Interval& at) {
     const Series line = Series::line(order, at, 1);
@@ -198,7 +198,8 @@ TaylorModel composed(Operation operation, const TaylorModel& a, double exponent)
     TaylorModel constant(coefficients(0, center)[0].lower());
     return is_known(range(constant)) ? constant : TaylorModel::rough(kAnything);
   }
-  const Series at_center = coefficients(kDegree, center), rest = coefficients(kDegree + 1, a.values_);
+  const Series at_center = coefficients(kDegree, center),
+               rest = coefficients(kDegree + 1, boost::numeric::hull(a.values_, center));
   const double distance =
       std::max(std::abs(a.values_.upper() - center), std::abs(a.values_.lower() - center));
   const double last = largest(rest[kDegree + 1]) * std::pow(distance, kDegree + 1);
@@ -237,6 +238,11 @@ TaylorModel hull(const TaylorModel& a, const TaylorModel& b) {
   mean.values_ = boost::numeric::hull(a.values_, b.values_);
   mean.narrow();
   return mean;
+}
+
+bool is_same(const TaylorModel& a, const TaylorModel& b) {
+  return a.coefficients() == b.coefficients() && a.remainder() == b.remainder() &&
+         range(a).lower() == range(b).lower() && range(a).upper() == range(b).upper();
 }
 
 TaylorModel smooth(Operation operation, const TaylorModel& a) {

@@ -73,4 +73,6 @@ TaylorModel narrowed(TaylorModel a, const Interval& values);
 /// What encloses both.
 TaylorModel hull(const TaylorModel& a, const TaylorModel& b);
 
+bool is_same(const TaylorModel& a, const TaylorModel& b);
+
 }  // namespace signorini

@@ -148,15 +148,14 @@ TEST(Faults, AreNamedWithTheirPlace) {
   problem.domain = Rectangle{};
   EXPECT_EQ(faults_of(problem)[0].where, "/boundary/nowhere");
 
-  problem = problems::paper(Scheme::nonconforming, 8);
-  problem.boundary["bottom"] = Contact{Field(-0.1, "/boundary/bottom/gap")};
-  faults = faults_of(problem);
-  ASSERT_EQ(faults.size(), problem.scheme == Scheme::conforming ? 1u : 0u);
-  problem.scheme = Scheme::conforming;
-  faults = faults_of(problem);
-  ASSERT_EQ(faults.size(), 1u);
-  EXPECT_EQ(faults[0].where, "/boundary/bottom/gap");
-  EXPECT_NE(faults[0].detail.find("can never be met"), std::string::npos);
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    problem = problems::paper(scheme, 8);
+    problem.boundary["bottom"] = Contact{Field(-0.1, "/boundary/bottom/gap")};
+    faults = faults_of(problem);
+    ASSERT_EQ(faults.size(), 1u);
+    EXPECT_EQ(faults[0].where, "/boundary/bottom/gap");
+    EXPECT_NE(faults[0].detail.find("can never be met"), std::string::npos);
+  }
 }
 
 TEST(Estimates, CountLikeTheSolution) {

@@ -424,6 +424,22 @@ TEST(Certificate, OfBendsBetweenShortEdgesHoldsInTheMirror) {
     }
 }
 
+TEST(Certificate, OfAStiffPartBesideASoftOneIsAsGoodAsOfOnePart) {
+  const auto relative = [](Scheme scheme, const std::string& young) {
+    Problem problem = problems::block(scheme, Pattern::right, 1, 0.3);
+    problem.domain = Rectangle{};
+    problem.mesh.fineness = Divisions{8, 8};
+    problem.material = YoungPoisson{problems::formula(young), 0.3, Plane::strain};
+    problem.boundary = {{"left", Fixed{VectorField(0, 0)}}, {"bottom", Contact{0.05}}, {"top", Pressure{0.01}}};
+    return solve(problem, {ActiveSet{}, {}}).summary.error_bound.value().relative;
+  };
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    const double one = relative(scheme, "1 + 0*x");
+    for (const char* contrast : {"1e3", "1e5", "1e7"})
+      EXPECT_LE(relative(scheme, std::string("x < 0.5 ? 1 : ") + contrast), 1.5 * one) << contrast;
+  }
+}
+
 TEST(Certificate, OfAnElasticBodyDoesNotDependOnUnits) {
   const ErrorBound plain = *solved(random_punch(3, Scheme::conforming, 0.3, 8)).summary.error_bound;
   Problem problem = random_punch(3, Scheme::conforming, 0.3, 8);

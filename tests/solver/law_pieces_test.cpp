@@ -1,11 +1,13 @@
 // What a varying law is cut into.
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "certificate_fields.hpp"
 #include "certify/law_pieces.hpp"
 #include "certify/triangle_sums.hpp"
+#include "fem/quadrature.hpp"
 #include "mesh/rectangle.hpp"
 #include "problems/membrane.hpp"
 #include "requested_mesh.hpp"
@@ -32,6 +34,63 @@ TEST(LawPieces, OfATensorThatWavesAreAffordable) {
       EXPECT_LE(laws.whole(t).stiffest, 40);
     }
   }
+}
+
+constexpr const char* kCircle = "((x-0.5)^2+(y-0.5)^2 < 0.09 ? 5 : 1)";
+
+/// A constant matrix times a scalar field.
+std::vector<Material> tensors_times(const std::string& factor) {
+  const auto times = [&](double entry) { return problems::formula(problems::digits(entry) + "*" + factor); };
+  return {MembraneStiffness{times(2), times(0.5), times(1)},
+          MembraneStiffness{times(0.245), times(-0.7427275), times(2.754)},
+          HookeTensor{{times(3), times(1), times(0.2), times(2), times(0), times(1)}}};
+}
+
+TEST(LawPieces, AreDefiniteIfTheEntriesHaveAFactorInCommon) {
+  Observer observer;
+  Progress progress(observer, std::nullopt);
+  const Mesh mesh = rectangle_mesh(Rectangle{}, Divisions{2, 2}, Pattern::right);
+  for (const std::string& factor : {std::string(kCircle), std::string("(1.5+sin(2.8*(1.5*x+1.6*y-0.5)))"),
+                                    std::string("(abs(x-0.4123) < 0.1 ? 1 : 1000)"),
+                                    std::string("max(0.1, 3*x-abs(y-0.3))")})
+    for (const Material& tensor : tensors_times(factor)) {
+      const LawOnMesh laws(tensor, mesh, 1e-6, progress);
+      EXPECT_TRUE(laws.unmet().empty()) << factor;
+      for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+        const LawPiece& whole = laws.whole(t);
+        EXPECT_TRUE(whole.is_known()) << factor;
+        const AffineMap map(mesh.corners(t));
+        for (const Point& reference : triangle_rule().points) {
+          const Eigen::VectorXd own =
+              Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance_at(tensor, map(reference))).eigenvalues();
+          EXPECT_LE(own.maxCoeff(), whole.softest * (1 + 1e-12)) << factor;
+          EXPECT_GE(own.minCoeff() * whole.stiffest, 1 - 1e-12) << factor;
+        }
+      }
+    }
+}
+
+/// E = A and E = 5 A are off from 3 A by 2 A, twice what E is at least, and C is as much so.
+TEST(LawPieces, OfAJumpBetweenTwoTensorsKnowBothOnAnyCell) {
+  const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
+  for (const Material& tensor : tensors_times(kCircle)) {
+    CellBudget none{0};
+    const std::vector<LawPiece> pieces = law_pieces(tensor, corners, {1e-6, 1e-6}, none);
+    ASSERT_EQ(pieces.size(), 1u);
+    EXPECT_TRUE(pieces[0].jumps);
+    for (int k = 1; k < LawPiece::kOrders; ++k) EXPECT_NEAR(pieces[0].errors[k], 2, 1e-9);
+  }
+}
+
+TEST(LawPieces, ThatMayVanishAreTakenAsInPoints) {
+  Observer observer;
+  Progress progress(observer, std::nullopt);
+  const Mesh mesh = rectangle_mesh(Rectangle{}, Divisions{2, 2}, Pattern::right);
+  const Material vanishing = MembraneStiffness::isotropic(problems::formula("abs(x-0.4123)", "/material/stiffness"));
+  const LawOnMesh laws(vanishing, mesh, 1e-6, progress);
+  ASSERT_EQ(laws.unmet().size(), 1u);
+  EXPECT_NE(laws.unmet()[0].find("not known to be positive definite"), std::string::npos);
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) EXPECT_TRUE(laws.whole(t).is_known());
 }
 
 /// The integrals over a triangle by rules that look at the law coarsely, against those that look closely.
