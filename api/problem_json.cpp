@@ -4,8 +4,8 @@
 #include "api/limits.hpp"
 #include "api/operator_key.hpp"
 #include "api/problem_members.hpp"
+#include "data_check.hpp"
 #include "solve.hpp"
-#include "sweep_check.hpp"
 
 namespace signorini::api {
 namespace {

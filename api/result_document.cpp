@@ -25,7 +25,8 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   out.end_object();
 }
 
-void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::vector<Estimate>& runs) {
+void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::vector<Estimate>& runs,
+                    const std::vector<std::string>& left) {
   double seconds = estimate.seconds;
   for (const Estimate& run : runs) seconds += run.seconds;
   out.begin_object().member("valid", true).member("triangles", estimate.triangles);
@@ -34,6 +35,11 @@ void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::ve
   out.key("estimated").begin_object();
   out.member("memory_bytes", std::round(memory_with_study(estimate, runs))).member("seconds", seconds).end_object();
   if (!runs.empty()) out.member("study_runs", runs.size());
+  if (!left.empty()) {
+    out.key("notes").begin_array();
+    for (const std::string& note : left) out.value(note);
+    out.end_array();
+  }
   out.end_object();
 }
 

@@ -80,7 +80,7 @@ int solve_and_write(const api::Request& request, const WriteEnding& write) {
     return written && ending.status == JobStatus::succeeded ? exit_done : exit_failed;
   } catch (...) {
     const Failure failure = describe(std::current_exception());
-    report(failure.details);
+    report(failure.details, status_of(failure.details));
     return exit_code_of(failure);
   }
 }

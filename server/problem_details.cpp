@@ -6,6 +6,10 @@
 
 namespace signorini::server {
 
+std::optional<int> status_of(const ProblemDetails& details) {
+  return details.kind == "invalid-problem" ? std::optional(422) : std::nullopt;
+}
+
 std::string to_json(const ProblemDetails& details, std::optional<int> status) {
   nlohmann::ordered_json document;
   document["type"] = "urn:signorini:problem:" + details.kind;

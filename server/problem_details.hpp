@@ -22,6 +22,9 @@ struct ProblemDetails {
   std::vector<FaultItem> errors = {};
 };
 
+/// The HTTP status that belongs to the error of a job: that of the refusal, if the problem itself is bad.
+std::optional<int> status_of(const ProblemDetails& details);
+
 /// `{"type", "title", "status", "detail", "errors"}`; `status` only where there is an HTTP status,
 /// `errors` only where there are some.
 std::string to_json(const ProblemDetails& details, std::optional<int> status = std::nullopt);

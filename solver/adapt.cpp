@@ -6,6 +6,7 @@
 
 #include "certify/mark.hpp"
 #include "condensed_problem.hpp"
+#include "data_check.hpp"
 #include "mesh/bisect.hpp"
 #include "requested_mesh.hpp"
 
@@ -26,18 +27,19 @@ std::string in_words(double number) {
 /// all.
 class Levels {
  public:
-  Levels(const Adaptive& goal, Progress& progress) : goal_(goal), progress_(progress) {}
+  Levels(const Problem& problem, Progress& progress)
+      : problem_(problem), goal_(*problem.mesh.adaptive), progress_(progress) {}
 
   bool empty() const { return levels_.empty(); }
   /// To be asked for once there is one.
   const Solution& finest() const { return *finest_; }
-  bool meets_tolerance() const { return levels_.back().relative <= goal_.tolerance; }
+  bool meets_tolerance() const {
+    return levels_.back().relative <= goal_.tolerance ||
+           is_at_rest(problem_, *finest_, *finest_->summary.error_bound);
+  }
 
   void add(Solution solution) {
     const Summary& summary = solution.summary;
-    if (!summary.error_bound && summary.outcome == Outcome::time_limit) throw TimeUp(summary.advice);
-    if (!summary.error_bound)
-      throw SolveError("the error bound leaves the range of double precision: choose units closer to 1");
     const Unknowns& n = summary.unknowns;
     levels_.push_back(
         progress_.refined({static_cast<int>(levels_.size()) + 1, static_cast<int>(summary.triangles),
@@ -84,6 +86,19 @@ class Levels {
     return std::move(*best_);
   }
 
+  /// The best level, or the one that has no bound to refine the mesh by if it is the first.
+  Solution end_without_bound(Solution solution) {
+    const std::string why = solution.summary.notes.back();
+    const bool is_late = solution.summary.outcome == Outcome::time_limit;
+    if (!empty())
+      return end_above_tolerance(is_late ? Outcome::time_limit : Outcome::tolerance_not_met, "on the next mesh " + why);
+    if (!is_late) {
+      solution.summary.outcome = Outcome::tolerance_not_met;
+      solution.summary.advice = why + "; the mesh was not refined";
+    }
+    return solution;
+  }
+
   /// The best level as an answer that does not meet the tolerance.
   Solution end_above_tolerance(Outcome outcome, const std::string& why) {
     return end(outcome, "the relative error bound is " + bound_and_triangles(levels_[best_level_]) +
@@ -105,6 +120,7 @@ class Levels {
            ", while the last one has " + bound_and_triangles(last);
   }
 
+  const Problem& problem_;
   const Adaptive& goal_;
   Progress& progress_;
   std::shared_ptr<Solution> finest_, best_;  // often the same
@@ -139,6 +155,7 @@ Solution solve_level(const Problem& problem, const std::shared_ptr<const Mesh>& 
 std::shared_ptr<const Mesh> first_mesh(const Problem& problem, Progress& progress) {
   const Mesh mesh = *requested_mesh(problem, progress);
   require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));
+  require_sound_data(problem, mesh, progress);
   return std::make_shared<const Mesh>(with_longest_edges_first(mesh));
 }
 
@@ -181,6 +198,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
   for (;;) {
     Solution solution = solve_level(problem, mesh, levels, settings, progress);
     const auto [outcome, advice] = std::pair(solution.summary.outcome, solution.summary.advice);
+    if (!solution.summary.error_bound) return levels.end_without_bound(std::move(solution));
     if (outcome == Outcome::converged || levels.empty()) levels.add(std::move(solution));
     if (outcome != Outcome::converged) return levels.end_above_tolerance(outcome, advice);
     if (levels.meets_tolerance()) return levels.end(outcome);
@@ -200,14 +218,12 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
 }  // namespace
 
 Solution adapt(const Problem& problem, const Settings& settings, Progress& progress) {
-  Levels levels(*problem.mesh.adaptive, progress);
+  Levels levels(problem, progress);
   try {
     return refine_until_met(problem, settings, levels, progress);
   } catch (const Cancelled& cancelled) {
     if (levels.empty()) throw;
     return levels.end_above_tolerance(Outcome::cancelled, cancelled.what());
-  } catch (const InvalidProblem&) {
-    throw;
   } catch (const TimeUp&) {
     if (levels.empty()) throw;
     return levels.end_above_tolerance(Outcome::time_limit,

@@ -13,32 +13,21 @@
 namespace signorini {
 namespace {
 
-/// How far a foundation may be, in displacements, before it is drawn near; and how far it is then.
-constexpr double kFar = 1e4, kNear = 1e3;
-/// How often, before the displacement is taken for none.
-constexpr int kMostPoses = 12;
+/// How far a foundation is that was drawn near, in displacements.
+constexpr double kNear = 1e3;
 
-/// The reach that the gaps should have beside the displacement; infinite if they are near already.
-double reach_for(const ClearanceSpace& space, const Fields& fields) {
-  const double displacement = fields.displacement.lpNorm<Eigen::Infinity>();
-  return is_far(space, displacement) ? kNear * displacement : std::numeric_limits<double>::infinity();
+/// The largest gap at an unknown, beyond the reach too.
+double farthest(const ClearanceSpace& space) {
+  double most = 0;
+  for (const ClearanceRow& row : space.rows)
+    if (row.unknown >= 0) most = std::max(most, row.gap + row.beyond);
+  return most;
 }
 
-/// A foundation was drawn so near that something touches it.
-bool touches_beyond(const ClearanceSpace& space, const Eigen::VectorXd& clearance) {
-  return std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
-    return row.unknown >= 0 && row.beyond > 0 && clearance[row.unknown] <= 0;
-  });
-}
-
-/// Nothing loads the body, and all that it moved by was noise; the foundation is drawn near all the way.
-Fields at_rest(Fields noise) {
-  noise.stress.setZero();
-  noise.displacement.setZero();
-  noise.clearance.setZero();
-  noise.coupling.setZero();
-  noise.outcome = Outcome::converged;
-  return noise;
+double diameter(const Mesh& mesh) {
+  Point low = mesh.points[0], high = low;
+  for (const Point& x : mesh.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
 }
 
 /// The forces on the contact unknowns by the stress, w p.
@@ -56,9 +45,7 @@ Eigen::VectorXd forces_on_unknowns(const Discretization& problem, const Eigen::M
 }  // namespace
 
 bool is_far(const ClearanceSpace& space, double displacement) {
-  return displacement > 0 && std::ranges::any_of(space.rows, [&](const ClearanceRow& row) {
-           return row.unknown >= 0 && row.gap > kFar * displacement;
-         });
+  return farthest(space) > kFar * displacement;
 }
 
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
@@ -96,26 +83,26 @@ void CondensedProblem::condense(Progress& progress) {
       std::make_unique<CondensedContact>(*operator_, assemble_right(*discretization_, progress), progress);
 }
 
-Fields CondensedProblem::find(const Method& method, Progress& progress, const Eigen::VectorXd& start) {
-  const auto pose = [&](double reach) {
+Fields CondensedProblem::find(const Method& method, Progress& progress, const Eigen::VectorXd& given) {
+  const double whole = farthest(discretization_->clearance);
+  Eigen::VectorXd start = given;
+  if (whole <= kFar * diameter(discretization_->mesh)) {
+    Fields fields = find_as_posed(method, progress, start);
+    if (!is_far(discretization_->clearance, fields.displacement.lpNorm<Eigen::Infinity>())) return fields;
+    start = fields.clearance;
+  }
+  // Beside a large gap the displacement may be but noise: the foundation goes away from where the body is.
+  for (double reach = 0;;) {
     discretization_->draw_near(reach);
     condense(progress);
-  };
-  Fields fields = find_as_posed(method, progress, start);
-  // Beside the largest gaps the first displacement may be but noise; each pose has some digits less of it.
-  for (int most = kMostPoses; most > 0; --most) {
-    const double reach = reach_for(discretization_->clearance, fields);
-    if (!std::isfinite(reach)) return fields;
-    pose(reach);
     progress.take_history();
-    fields = find_as_posed(method, progress, fields.clearance.cwiseMin(reach));
-    if (touches_beyond(discretization_->clearance, fields.clearance)) {
-      pose(std::numeric_limits<double>::infinity());
-      return find_as_posed(method, progress, {});
-    }
+    Fields fields = find_as_posed(method, progress, start.cwiseMin(reach));
+    const ClearanceSpace& space = discretization_->clearance;
+    const bool is_free = reach > 0 && !space.is_touched_too_early(fields.clearance);
+    const double displacement = fields.displacement.lpNorm<Eigen::Infinity>();
+    if (is_free || displacement == 0 || reach >= whole) return fields;
+    reach = kNear * std::max(reach, displacement);
   }
-  pose(0);
-  return at_rest(std::move(fields));
 }
 
 Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
@@ -132,7 +119,8 @@ Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
   };
   const auto body = [&](const Eigen::VectorXd& clearance) -> BodyState {
     complete_for(clearance);
-    return {mean_stress(*discretization_, all.fields.stress, all.fields.displacement),
+    return {mean_stress(*discretization_, all.fields.stress, all.fields.displacement,
+                        discretization_->clearance.clearance(clearance)),
             forces_on_unknowns(*discretization_, all.fields.stress, clearance.size())};
   };
   const ContactResult found = find_clearance(contact(), method, progress, body, start);

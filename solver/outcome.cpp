@@ -31,10 +31,11 @@ std::string why_stalled(const Settings& settings, const std::string& after) {
            "residuals say that it is far from the solution; the step rho is too small for this augmentation: "
            "raise rho towards twice the augmentation or lower the augmentation, lower the tolerance, or use "
            "rho and augmentation \"auto\", or active_set";
+  const bool exact = std::holds_alternative<ActiveSet>(settings.method);
   return "the contact conditions are not met" + after +
          " as far as the tolerance asks, and rounding keeps the method from more: gaps, loads and stiffness "
-         "differ by too many powers of ten, or the body is too thin somewhere; check units and sizes, raise the "
-         "tolerance or use active_set";
+         "differ by too many powers of ten, or the body is too thin somewhere; check units and sizes" +
+         (exact ? "" : ", raise the tolerance or use active_set");
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cmath>
 
 #include "contact/rigid_motions.hpp"
+#include "data_check.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "mesh/mesh_sizes.hpp"
 #include "mesh/refine.hpp"
@@ -11,10 +13,15 @@
 namespace signorini {
 namespace {
 
-/// Without its formula, of which the solve encloses all values at great length.
+/// Without its formula, of which the solve encloses all values at great length. Where there is no value it does not
+/// count: the solve asks in other points.
 Field sampled(const Field& field) {
   if (!field.formula()) return field;
-  return Field([field](const Point& x, const Vector& normal) { return field(x, normal); }, field.name());
+  const auto value = [formula = *field.formula()](const Point& x, const Vector& normal) {
+    const double own = formula(x.x(), x.y(), normal.x(), normal.y());
+    return std::isfinite(own) ? own : 0;
+  };
+  return Field(value, field.name());
 }
 
 VectorField sampled(const VectorField& field) {
@@ -42,9 +49,7 @@ double longest_formula(const VectorField& body) {
 
 }  // namespace
 
-void require_rest(const Problem& problem) {
-  constexpr double long_formula = 60;
-  if (longest_formula(problem.body) > long_formula) return;
+std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Variation>& sweep) {
   MeshRequest start = problem.mesh;
   start.adaptive.reset();
   // A polygon's triangles are known when it is meshed.
@@ -53,12 +58,26 @@ void require_rest(const Problem& problem) {
   if (problem.mesh.adaptive && !is_polygon)
     require_room(*problem.mesh.adaptive, count(PredictedSizes(problem.domain)(start)));
   const std::optional<Mesh> small = make_small_mesh(problem.domain, start);
-  if (!small || count(sizes_of(*small)) > few_triangles) return;
+  if (!small || count(sizes_of(*small)) > few_triangles)
+    return {"the mesh has more than " + std::to_string(few_triangles) +
+            " triangles: whether formulas have sound values on it, and whether the body can come to rest, the solve "
+            "will tell"};
   const Mesh mesh = stabilized(problem, refine(*small, start.refine));
   if (problem.mesh.adaptive)
     require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));
-  const Problem cheap = with_sampled_loads(problem);
-  held_by_contact_alone(Discretization(cheap, mesh));
+  constexpr double most_steps = 2e6;
+  DataCheck check = check_data(problem, sweep, mesh, most_steps, nullptr);
+  if (!check.faults.empty()) throw InvalidProblem(std::move(check.faults));
+  std::vector<std::string> left;
+  if (!check.is_complete)
+    left.push_back("the formulas are so long, or so many, that they were tried in some points of the mesh only: "
+                   "whether they have sound values in all, the solve will tell");
+  constexpr double long_formula = 60;
+  if (longest_formula(problem.body) > long_formula)
+    left.push_back("the formula of the load is long: whether the body can come to rest, the solve will tell");
+  else
+    held_by_contact_alone(Discretization(with_sampled_loads(problem), mesh));
+  return left;
 }
 
 }  // namespace signorini

@@ -130,7 +130,7 @@ struct Summary {
   double energy = 0;  ///< primal energy ½(Cσ,σ) − (f,u) − <t,u> at the discrete solution
   Residuals residuals;
   ContactSummary contact;
-  std::optional<ErrorBound> error_bound;  ///< none if its numbers leave the range of double precision
+  std::optional<ErrorBound> error_bound;  ///< none if nothing finite is known; the notes say why
   std::vector<Reaction> parts;
   std::vector<Level> levels;  ///< of a mesh that refined itself
   bool reused = false;        ///< the operator was there from an earlier solve

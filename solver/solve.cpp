@@ -4,11 +4,11 @@
 
 #include "adapt.hpp"
 #include "condensed_problem.hpp"
+#include "data_check.hpp"
 #include "memory_meter.hpp"
 #include "paper_form.hpp"
 #include "requested_mesh.hpp"
 #include "sweep.hpp"
-#include "sweep_check.hpp"
 
 namespace signorini {
 namespace {
@@ -25,6 +25,8 @@ void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, O
       entry = solve_one(variation, progress);
     } catch (const SolveError& failure) {
       entry.error = failure.what();
+    } catch (const InvalidProblem& invalid) {
+      entry.error = invalid.faults().front().where + " " + invalid.faults().front().detail;
     }
     entry.title = variation.title;
     entry.seconds = progress.seconds();
@@ -41,9 +43,11 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   const bool keeps = cache && !used;
   Solution solution;
   {
-    CondensedProblem condensed = used
-                                     ? CondensedProblem(problem, used, progress)
-                                     : CondensedProblem(problem, requested_mesh(problem, progress), progress);
+    std::shared_ptr<const Mesh> mesh;
+    if (!used) mesh = requested_mesh(problem, progress);
+    require_sound_data(problem, used ? used->mesh() : *mesh, progress);
+    CondensedProblem condensed =
+        used ? CondensedProblem(problem, used, progress) : CondensedProblem(problem, mesh, progress);
     used = condensed.used_operator();
     if (keeps) cache->keep(problem.operator_key, used);
     solution = condensed.solve(settings, progress);

@@ -48,11 +48,10 @@ double memory_with_study(const Estimate& problem, const std::vector<Estimate>& r
 /// Every fault of the problem, and where the method cannot do what it asks for.
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);
 
-/// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, and a body
-/// that cannot come to rest. A mesh of more than `few_triangles` and a load of a long formula are left to the
-/// solve. The problem has no fault that validate() sees. Throws InvalidProblem and
-/// SolveError.
-void require_rest(const Problem& problem);
+/// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, those of the sweep too,
+/// and a body that cannot come to rest. Answers in sentences what it leaves to the solve: a mesh of more than
+/// `few_triangles`, and long formulas. The problem has no fault that validate() sees. Throws InvalidProblem and SolveError.
+std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Variation>& sweep = {});
 
 /// Solves Problem 4.1 of the paper for the problem.
 ///

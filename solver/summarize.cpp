@@ -165,20 +165,11 @@ Unknowns count_unknowns(const Discretization& problem) {
           spaces.rotations() ? static_cast<std::int64_t>(problem.mesh.points.size()) : 0};
 }
 
-/// Below this a bound is rounding, as of a body that is displaced without stress: in the same unit the norm
-/// of strains so small that the displacements have hardly a digit for them.
-double rounding_of_bound(const Problem& problem, const Solution& solution) {
-  double compliance = std::numeric_limits<double>::infinity();
-  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
-    const auto c = compliance_at(problem.material, solution.mesh.centroid(t));
-    compliance = std::min(compliance, c.diagonal().minCoeff());
-  }
-  return 1e-11 * solution.displacement.lpNorm<Eigen::Infinity>() / std::sqrt(compliance);
-}
-
 /// What must be known before the numbers are used, and what would make them better.
 std::vector<std::string> warnings(const Problem& problem, const Solution& solution, const ErrorBound& bound) {
-  if (bound.relative <= 1 || bound.value <= rounding_of_bound(problem, solution)) return {};
+  if (bound.relative < 1) return {};
+  if (is_at_rest(problem, solution, bound))
+    return {"the body has no stress but rounding: a bound relative to it says nothing"};
   const bool converged = solution.summary.outcome == Outcome::converged;
   std::ostringstream relative;
   relative << std::setprecision(3) << bound.relative;
@@ -203,6 +194,21 @@ void refuse_overflow(const Solution& solution) {
 }
 
 }  // namespace
+
+bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBound& bound) {
+  const double displacement = solution.displacement.lpNorm<Eigen::Infinity>();
+  double length = displacement, compliance = std::numeric_limits<double>::infinity();
+  for (const ContactPart& part : solution.contact)
+    for (const double clearance : part.clearance)
+      length = std::max(length, std::min(clearance, kFar * displacement));
+  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
+    const auto c = compliance_at(problem.material, solution.mesh.centroid(t));
+    compliance = std::min(compliance, c.diagonal().minCoeff());
+  }
+  constexpr double rounding = 1e-11;
+  const double might_be = length / std::sqrt(compliance);
+  return bound.value <= bound.relative * rounding * might_be && bound.value <= std::sqrt(2 * rounding) * might_be;
+}
 
 Timings timings(const Progress& progress) {
   return {progress.seconds_in(Phase::mesh),      progress.seconds_in(Phase::assemble),
@@ -252,15 +258,16 @@ Solution describe(const Discretization& problem, const Fields& fields, const Set
 namespace {
 
 void add(const Problem& problem, Certificate certificate, Solution& solution) {
-  if (std::isfinite(certificate.bound.value) && std::isfinite(certificate.bound.energy_upper)) {
+  if (certificate.has_bound()) {
     std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(solution.summary.notes));
     solution.summary.error_bound = std::move(certificate.bound);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);
   } else {
-    std::string note = "there is no error bound: its numbers leave the range of double precision";
-    for (const std::string& reason : certificate.bound.unmet) note += "; " + reason;
-    solution.summary.notes.push_back(std::move(note));
+    std::string why;
+    for (const std::string& reason : certificate.bound.unmet) why += (why.empty() ? "" : "; ") + reason;
+    if (why.empty()) why = "its numbers leave the range of double precision";
+    solution.summary.notes.push_back("there is no error bound: " + why);
   }
 }
 

@@ -10,6 +10,9 @@
 
 namespace signorini {
 
+/// How far a foundation may be, in displacements, before it is drawn near: a larger gap would drown them.
+inline constexpr double kFar = 1e4;
+
 /// The discrete fields that a method found.
 struct Fields {
   Eigen::MatrixXd stress;        ///< a column a triangle
@@ -38,6 +41,10 @@ Reaction make_reaction(std::string part, const std::vector<double>& values);
 /// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone: contact
 /// pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
 Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress);
+
+/// Stress and bound are rounding beside what displacement and clearance might have made, as of a body that moves
+/// without strain. A pressure at which the stress is rounding acts over the clearance, so that of the bound the square is.
+bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBound& bound);
 
 /// Enters the phase certify and adds the error bound, if its numbers are finite, and what must be said about it. If the
 /// time is up before, there is none, and the outcome says so.

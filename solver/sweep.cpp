@@ -83,7 +83,8 @@ class Sweep::Reference {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
-    mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement);
+    mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement,
+                               space().clearance(clearance_));
     observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "data_check.hpp"
 #include "fem/clearance_space.hpp"
 #include "fem/contact_direction.hpp"
 #include "fem/element.hpp"
@@ -12,7 +13,6 @@
 #include "problem/fields.hpp"
 #include "progress.hpp"
 #include "solve.hpp"
-#include "sweep_check.hpp"
 
 namespace signorini {
 namespace {
@@ -23,10 +23,15 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+/// Steps that may be taken for each field, see steps_of().
+constexpr double kAll = std::numeric_limits<double>::infinity(), kOnCoarseMesh = 1e6;
+
 /// Collects the faults of a problem, subject by subject.
 class Validation {
  public:
-  explicit Validation(const Problem& problem) : problem_(problem) {}
+  /// `most_steps`: for each field. Where its formula is long and places many, only each so many is asked.
+  Validation(const Problem& problem, double most_steps, Progress* progress = nullptr)
+      : problem_(problem), most_steps_(most_steps), progress_(progress) {}
 
   std::vector<Fault> run() {
     faults_ = validate(problem_.domain, problem_.mesh);
@@ -41,6 +46,12 @@ class Validation {
     return std::move(faults_);
   }
 
+  /// All that the discrete problem asks on its mesh.
+  std::vector<Fault> run_on(const Mesh& mesh) {
+    check_fields(mesh);
+    return std::move(faults_);
+  }
+
   std::vector<Fault> run_on_data(const Mesh& mesh, bool gaps_only) {
     if (!gaps_only) check_body(mesh);
     check_boundary_data(mesh);
@@ -50,6 +61,8 @@ class Validation {
 
   /// What it has taken so far.
   double steps() const { return steps_; }
+  /// All places were asked.
+  bool is_complete() const { return is_complete_; }
 
  private:
   void fault(std::string where, std::string detail) {
@@ -90,8 +103,7 @@ class Validation {
     if (elastic_only && d == 1) fault(where, "rollers and pressures are for elasticity");
   }
 
-  /// Evaluates every field where a coarse mesh of the domain needs it; the solve does the same on the real
-  /// mesh.
+  /// Evaluates every field where the mesh needs it.
   void check_fields(const Mesh& mesh) {
     attempt([&] {
       sample(mesh, fields_of(problem_.material),
@@ -142,6 +154,7 @@ class Validation {
 
   template <typename Evaluate>
   void attempt(const Evaluate& evaluate) {
+    if (progress_) progress_->check();
     try {
       evaluate();
     } catch (const InvalidProblem& invalid) {
@@ -149,10 +162,11 @@ class Validation {
     }
   }
 
-  /// Where formulas are long and places many, only each so many is asked.
-  static std::size_t stride_for(std::size_t places, const std::vector<const Field*>& fields) {
-    constexpr double most_steps = 1e6;
-    return 1 + static_cast<std::size_t>(static_cast<double>(places) * steps_of(fields) / most_steps);
+  std::size_t stride_for(std::size_t places, const std::vector<const Field*>& fields) {
+    const auto stride =
+        1 + static_cast<std::size_t>(static_cast<double>(places) * steps_of(fields) / most_steps_);
+    is_complete_ = is_complete_ && stride == 1;
+    return stride;
   }
 
   template <typename Evaluate>
@@ -165,13 +179,17 @@ class Validation {
     for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) {
       const AffineMap map(mesh.corners(static_cast<int>(t)));
       for (const Point& reference : triangle_rule().points) evaluate(map(reference));
+      evaluate(mesh.centroid(static_cast<int>(t)));
       steps_ += steps_of(fields) * TriangleRule::size;
     }
   }
 
   const Problem& problem_;
+  const double most_steps_;
+  Progress* const progress_;
   std::vector<Fault> faults_;
   double steps_ = 0;
+  bool is_complete_ = true;
 };
 
 }  // namespace
@@ -183,7 +201,7 @@ void apply(const Variation& variation, Problem& problem) {
 }
 
 std::vector<Fault> validate(const Problem& problem) {
-  return Validation(problem).run();
+  return Validation(problem, kOnCoarseMesh).run();
 }
 
 std::vector<Fault> validate(const Problem& problem, const Settings& settings) {
@@ -194,33 +212,57 @@ std::vector<Fault> validate(const Problem& problem, const Settings& settings) {
 }
 
 std::vector<Fault> validate(const Problem& problem, const std::vector<Variation>& sweep) {
-  return faults_of_sweep(problem, sweep, std::numeric_limits<double>::infinity(), nullptr);
+  return faults_of_sweep(problem, sweep, kAll, nullptr);
 }
+
+namespace {
+
+/// Adds the faults of the variations until so many steps are taken; then they are not complete.
+void check_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh, double most_of_field,
+                 double most_steps, Progress* progress, DataCheck& check) {
+  Problem varied = problem;
+  for (std::size_t i = 0; i < sweep.size(); ++i) {
+    check.is_complete = check.is_complete && most_steps > 0;
+    if (most_steps <= 0) return;
+    apply(sweep[i], varied);
+    Validation validation(varied, most_of_field, progress);
+    const bool other_gaps_only = !problem.load_key.empty() && varied.load_key == problem.load_key;
+    const std::string place = "/sweep/" + std::to_string(i);
+    for (Fault& fault : validation.run_on_data(mesh, other_gaps_only)) {
+      if (!fault.where.starts_with(place)) fault.where = place + fault.where;
+      check.faults.push_back(std::move(fault));
+    }
+    check.is_complete = check.is_complete && validation.is_complete();
+    most_steps -= validation.steps();
+  }
+}
+
+}  // namespace
 
 std::vector<Fault> faults_of_sweep(const Problem& problem, const std::vector<Variation>& sweep,
                                    double most_steps, Progress* progress) {
-  std::vector<Fault> faults;
-  if (sweep.empty()) return faults;
+  if (sweep.empty()) return {};
   if (problem.mesh.adaptive)
     return {{"/sweep",
              "an adaptive mesh depends on the loads and gaps, and a sweep has one mesh for all: leave "
              "mesh.adaptive out, or solve the entries one by one"}};
-  const std::optional<Mesh> mesh = make_coarse_mesh(problem.domain);
-  if (!mesh) return faults;
-  Problem varied = problem;
-  for (std::size_t i = 0; i < sweep.size() && most_steps > 0; ++i) {
-    if (progress) progress->check();
-    apply(sweep[i], varied);
-    Validation validation(varied);
-    const bool other_gaps_only = !problem.load_key.empty() && varied.load_key == problem.load_key;
-    const std::string place = "/sweep/" + std::to_string(i);
-    for (Fault& fault : validation.run_on_data(*mesh, other_gaps_only)) {
-      if (!fault.where.starts_with(place)) fault.where = place + fault.where;
-      faults.push_back(std::move(fault));
-    }
-    most_steps -= validation.steps();
-  }
-  return faults;
+  DataCheck check;
+  if (const std::optional<Mesh> mesh = make_coarse_mesh(problem.domain))
+    check_sweep(problem, sweep, *mesh, kOnCoarseMesh, most_steps, progress, check);
+  return std::move(check.faults);
+}
+
+DataCheck check_data(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh,
+                     double most_steps, Progress* progress) {
+  Validation validation(problem, most_steps, progress);
+  DataCheck check{validation.run_on(mesh), validation.is_complete()};
+  check_sweep(problem, sweep, mesh, most_steps, most_steps, progress, check);
+  return check;
+}
+
+void require_sound_data(const Problem& problem, const Mesh& mesh, Progress& progress) {
+  if (DataCheck check = check_data(problem, {}, mesh, kAll, &progress); !check.faults.empty())
+    throw InvalidProblem(std::move(check.faults));
 }
 
 }  // namespace signorini

@@ -98,7 +98,7 @@ void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
   } else {
     out.null();
   }
-  out.key("error").json(verdict.error ? to_json(*verdict.error) : "null");
+  out.key("error").json(verdict.error ? to_json(*verdict.error, status_of(*verdict.error)) : "null");
   write_links(out.key("links"), job);
   out.end_object();
 }

@@ -15,10 +15,10 @@ namespace signorini::server {
 Response validate_problem(Service& service, const Request& request) {
   allow_only(request.query, {});
   const Intake intake = take_in(service, request);
-  require_rest(intake.request.problem);
+  const std::vector<std::string> left = look_ahead(intake.request.problem, intake.request.sweep);
   return document_response(request, 200,
-                           [estimate = intake.estimate, runs = intake.runs](api::DocumentWriter& out) {
-                             api::write_estimate(out, estimate, runs);
+                           [estimate = intake.estimate, runs = intake.runs, left](api::DocumentWriter& out) {
+                             api::write_estimate(out, estimate, runs, left);
                            });
 }
 

@@ -31,12 +31,19 @@ class StressNorm {
 
   /// A small part of ‖σ‖ for displacements of the same size that strain the body as a whole: the diagonal of
   /// M is a compliance.
-  double no_stress() const { return 1e-4 * relative(largest_term_, largest_compliance_); }
+  double no_stress() const { return small_part_for(largest_term_); }
 
   /// ‖σ_h‖, or what counts as no stress at all.
   double value() const { return std::max(std::sqrt(square_), no_stress()); }
 
+  /// The same beside pressures, which have the rounding of clearances too.
+  double value_beside(const Eigen::VectorXd& clearance) const {
+    return std::max(value(), small_part_for(clearance.lpNorm<Eigen::Infinity>()));
+  }
+
  private:
+  double small_part_for(double length) const { return 1e-4 * relative(length, largest_compliance_); }
+
   double square_ = 0, largest_term_ = 0, largest_compliance_ = 0;
 };
 
@@ -61,6 +68,7 @@ class Balance {
   }
 
   double stress_norm() const { return norm_.value(); }
+  double stress_norm_beside(const Eigen::VectorXd& clearance) const { return norm_.value_beside(clearance); }
 
   double equilibrium() const {
     const double size = std::sqrt(problem_.mesh.area());
@@ -184,7 +192,7 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
 }
 
 double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
-                   const Eigen::MatrixXd& displacement) {
+                   const Eigen::MatrixXd& displacement, const Eigen::VectorXd& clearance) {
   struct Shape {
     LocalMatrix compliance, stress_mass;
   };
@@ -199,7 +207,7 @@ double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
     norm.add(shape.compliance, shape.stress_mass, sigma, shape.compliance.lazyProduct(sigma),
              b.transpose().lazyProduct(u));
   }
-  return norm.value() / std::sqrt(problem.mesh.area());
+  return norm.value_beside(clearance) / std::sqrt(problem.mesh.area());
 }
 
 double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
@@ -217,7 +225,8 @@ Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
     if (problem.clearance.rows[i].unknown >= 0) tested.push_back(i);
   }
   const ContactResiduals contact = contact_residuals(clearance(tested), pressure(tested), weight(tested),
-                                                     balance.stress_norm() / std::sqrt(problem.mesh.area()));
+                                                     balance.stress_norm_beside(clearance) /
+                                                         std::sqrt(problem.mesh.area()));
   return {balance.equilibrium(), balance.constitutive(),  contact.penetration,
           contact.tension,       contact.complementarity, balance.symmetry()};
 }

@@ -24,9 +24,10 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
                                    const Eigen::VectorXd& weight, double mean_stress);
 
 /// ‖σ_h‖ / √|Ω|, or what counts as no stress at all: a body that moves without strain has only rounding for
-/// stress, and nothing to compare it with.
+/// stress, and nothing to compare it with but what its displacement and clearance might have made. `clearance` has an
+/// entry a row.
 double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
-                   const Eigen::MatrixXd& displacement);
+                   const Eigen::MatrixXd& displacement, const Eigen::VectorXd& clearance);
 
 /// What the stress in the body says of the contact.
 struct BodyState {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "fem/contact_direction.hpp"
+#include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
 
@@ -49,6 +50,7 @@ class Builder {
         components_(components(problem.material)),
         order_(spaces_of(problem.scheme, components_).order),
         held_(problem, mesh) {
+    space_.reach = reach;
     for (const auto& [point, u] : held_.fixed) largest_fixed_ = std::max(largest_fixed_, u.norm());
   }
 
@@ -88,6 +90,7 @@ class Builder {
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
     const Vector direction = contact_direction(mesh_, mesh_.boundary[part], condition, edge);
     ContactEdge contact{edge, {}, {}, straightened(direction, edge, way)};
+    for (int end = 0; end < 2; ++end) require_room(part, edge, end, condition, contact.direction);
     if (order_ == 0)
       contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
     else
@@ -134,16 +137,27 @@ class Builder {
     return std::nullopt;
   }
 
-  /// λ = g − u_n is known there.
+  double rounding_of(double gap) const { return 1e-12 * (std::abs(gap) + largest_fixed_); }
+
+  void require_room(int part, int edge, int end, const Contact& condition, const Vector& direction) const {
+    const int node = mesh_.edges[edge][end];
+    const auto held = held_displacement(node, edge, direction);
+    if (!held) return;
+    const double gap = values_at_end(condition.gap, EdgeLine(mesh_, edge), end, rounding_of(*held)).upper();
+    if (!(gap < *held - rounding_of(gap))) return;
+    const bool is_fixed = held_.fixed.contains(node);
+    throw InvalidProblem({{"/boundary/" + mesh_.boundary[part].name + "/gap",
+                           "the contact can never be met at " + to_string(mesh_.points[node]) + ", where a " +
+                               (is_fixed ? "fixed part" : "roller") +
+                               " beside it holds the body beyond the gap, and no displacement jumps: raise the gap "
+                               "there" +
+                               (is_fixed ? " or the fixed value" : "")}});
+  }
+
+  /// λ = g − u_n is known there; where the gap jumps in the node it may seem to be negative.
   int held_row(ClearanceRow row, double normal_displacement) {
     row.datum = row.gap - normal_displacement;
-    const double rounding = 1e-12 * (std::abs(row.gap) + largest_fixed_);
-    if (row.datum < -rounding)
-      throw InvalidProblem({{"/boundary/" + mesh_.boundary[row.part].name + "/gap",
-                             "the contact can never be met at " + to_string(row.point) +
-                                 ", which a fixed part holds beyond the gap: raise the gap there "
-                                 "or the fixed value"}});
-    if (row.datum < rounding) row.datum = 0;
+    if (row.datum < rounding_of(row.gap)) row.datum = 0;
     space_.rows.push_back(row);
     return static_cast<int>(space_.rows.size()) - 1;
   }
@@ -174,6 +188,12 @@ Eigen::VectorXd ClearanceSpace::clearance(const Eigen::VectorXd& unknown) const 
   for (std::size_t i = 0; i < rows.size(); ++i)
     all[i] = rows[i].unknown < 0 ? rows[i].datum : unknown[rows[i].unknown];
   return all;
+}
+
+bool ClearanceSpace::is_touched_too_early(const Eigen::VectorXd& unknown) const {
+  return std::ranges::any_of(rows, [&](const ClearanceRow& row) {
+    return row.unknown >= 0 && row.beyond > 0 && unknown[row.unknown] <= 0;
+  });
 }
 
 ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh, double reach) {

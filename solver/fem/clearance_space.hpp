@@ -54,17 +54,22 @@ struct ClearanceSpace {
   std::vector<ClearanceRow> rows;  ///< part by part, in order along each part
   std::vector<ContactEdge> edges;
   int unknowns = 0;
+  /// The largest gap that the rows may have; where the foundation is farther away it was drawn near.
+  double reach = std::numeric_limits<double>::infinity();
 
   /// The whole clearance, data included, from the contact unknowns.
   Eigen::VectorXd clearance(const Eigen::VectorXd& unknown) const;
+
+  /// A foundation was drawn so near that something touches it.
+  bool is_touched_too_early(const Eigen::VectorXd& unknown) const;
 };
 
-/// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a node that a contact part shares with a
-/// fixed part is fixed beyond the gap: no displacement meets both.
+/// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a contact part begins beside a part that holds the body
+/// beyond the gap, a fixed one, or a roller along the same line: v_n would have to jump there, and no displacement of
+/// finite energy does. Where the directions of contact and roller differ, a displacement may meet both.
 ///
-/// `reach`: the largest gap that the space has. A foundation that is farther away is drawn near: as long as
-/// nothing touches it there, the displacement is the same, and it keeps the digits that it would lose beside
-/// a large gap.
+/// `reach`: ClearanceSpace::reach. As long as nothing touches a foundation that was drawn near, the displacement is the
+/// same, and it keeps the digits that it would lose beside a large gap.
 ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh,
                                     double reach = std::numeric_limits<double>::infinity());
 

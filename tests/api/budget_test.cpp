@@ -28,7 +28,7 @@ void look_at(const std::string& body) {
   const Request request = parse_request(body);
   estimate(request.problem);
   if (request.study) estimate(request.problem, *request.study);
-  require_rest(request.problem);
+  look_ahead(request.problem, request.sweep);
 }
 
 /// The pointer of the first fault; `malformed` if the body is no document, empty if the problem may be taken

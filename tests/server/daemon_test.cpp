@@ -418,6 +418,19 @@ TEST(SolveCommand, BadInputHasExitCode2) {
   }
 }
 
+/// Between the points of a coarse mesh, at which a problem is looked at when it is sent.
+TEST_F(DaemonTest, AFaultThatTheSolveFindsHasTheStatusOfARefusal) {
+  json problem = example("paper-nonconforming");
+  problem["mesh"]["divisions"] = {32, 32};
+  problem["load"]["body"] = "log((x-0.4123)^2+(y-0.3331)^2-1e-4)";
+  const json status = json::parse(post(problem, "?wait=60")->body);
+  EXPECT_EQ(status.at("status"), "failed");
+  EXPECT_EQ(status.at("error").at("status"), 422);
+  ChildProcess process({"solve", "-"}, problem.dump());
+  EXPECT_EQ(process.wait(60s), 2);
+  EXPECT_EQ(json::parse(process.standard_error()).at("status"), 422);
+}
+
 TEST(StudyCommand, WritesItsTableInEveryFormat) {
   const std::string problem = example("convergence-study").dump();
   ChildProcess table({"study", "-"}, problem);

@@ -101,7 +101,7 @@ Run solves_again(Problem problem, const Settings& settings) {
   return [=](Observer& observer) { solve(problem, settings, observer, *shelf); };
 }
 
-/// Twelve problems, each with the seconds in which its phases lie.
+/// Thirteen problems, each with the seconds in which its phases lie.
 std::vector<std::pair<Run, double>> problems_to_cancel() {
   Problem graded = membrane_on(disc(100), MeshRequest(LargestEdge{0.1}), {"side0"});
   graded.mesh.sizes = {{{0, 0}, 0.2, 1e-3}};
@@ -110,6 +110,8 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
   Problem adaptive = problems::paper(Scheme::nonconforming, 8);
   adaptive.mesh.adaptive = Adaptive{1e-6, 2'000'000};
   const Problem paper = problems::paper(Scheme::conforming, 60);
+  Problem noisy = paper;
+  noisy.body = problems::formula("sin(12345.678*x)*43758.5453-rint(sin(12345.678*x)*43758.5453)");
   const Variation lower{"", Field(-20), paper.boundary, "lower"};
   const Study study{{Scheme::conforming, Scheme::nonconforming},
                     {{"/0", MeshRequest(Divisions{80, 80})}, {"/1", MeshRequest(Divisions{160, 160})}},
@@ -129,6 +131,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
            },
            4},
           {solves(adaptive), 4},
+          {solves(noisy), 2},
           {solves(membrane_on(grid(300), {}, {"all around"})), 2},
           {solves(problems::paper(Scheme::nonconforming, 512), paper_form), 4}};
 }

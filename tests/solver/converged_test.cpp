@@ -76,6 +76,47 @@ TEST(Converged, MeansThatTheResidualsAreMetWhereContactIsTinyBesideTheLoad) {
     }
 }
 
+/// Pulled along as it is, over a gap that is much larger than the displacement: all stress is rounding.
+TEST(Converged, IsWhatMovesWithoutStress) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double length : {1e-9, 1., 1e9})
+      for (const double displacement : {1e-9, 1., 1e9})
+        for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
+          Problem problem;
+          problem.domain = Rectangle{{0, 0}, {length, length}};
+          problem.mesh.fineness = Divisions{6, 5};
+          problem.scheme = scheme;
+          problem.boundary = {{"bottom", Fixed{0.00833 * displacement}}, {"left", Contact{0.2043 * displacement}}};
+          const Summary summary = solve(problem, {method, {}}).summary;
+          EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
+          for (const std::string& note : summary.notes)
+            EXPECT_EQ(note.find("worth nothing"), std::string::npos) << note;
+          problem.mesh.adaptive = Adaptive{0.1, 1000};
+          const Summary refined = solve(problem, {method, {}}).summary;
+          EXPECT_EQ(refined.outcome, Outcome::converged) << refined.advice;
+          EXPECT_EQ(refined.levels.size(), 1u);
+        }
+}
+
+/// The body rests, because the mesh sees nothing of a ridge that reaches through it.
+TEST(Converged, IsABodyAtRestUnderARidgeThatTheMeshDoesNotSee) {
+  Problem problem = problems::paper(Scheme::nonconforming, 5);
+  problem.mesh.fineness = Divisions{7, 5};
+  problem.body = {};
+  problem.boundary = {{"left", Fixed{}},
+                      {"right", Fixed{}},
+                      {"bottom", Contact{problems::formula("0.1 - 0.3*exp(-1e4*(x-0.4123)^2)")}}};
+  for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
+    const Summary summary = solve(problem, {method, {}}).summary;
+    EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
+    EXPECT_GT(summary.error_bound->energy_upper, 0);
+    EXPECT_LT(std::abs(summary.energy), 1e-20 * summary.error_bound->energy_upper);
+    EXPECT_TRUE(std::ranges::any_of(summary.notes, [](const std::string& note) {
+      return note.find("worth nothing") != std::string::npos;
+    }));
+  }
+}
+
 TEST(Converged, MeansThatTheResidualsAreMetOnRandomProblems) {
   for (unsigned seed = 1; seed < (sanitized ? 2 : 21); ++seed)
     expect_met(problems::random(seed), "seed " + std::to_string(seed));

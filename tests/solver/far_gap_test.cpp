@@ -1,4 +1,6 @@
 // A gap so large that it stands for "never" neither drowns the displacement nor the bound.
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "problems/elasticity.hpp"
@@ -30,11 +32,16 @@ void expect_same(Pose pose, const Method& method, Scheme scheme, double far) {
   EXPECT_EQ(other.summary.outcome, Outcome::converged);
   EXPECT_NEAR(other.summary.energy, one.summary.energy, 1e-8 * std::abs(one.summary.energy));
   EXPECT_NEAR(other.summary.contact.force, one.summary.contact.force, 1e-6 * one.summary.contact.force);
-  const ErrorBound &near_bound = one.summary.error_bound.value(),
-                   &far_bound = other.summary.error_bound.value();
-  EXPECT_TRUE(far_bound.guaranteed);
-  EXPECT_NEAR(far_bound.value, near_bound.value, 0.02 * near_bound.value);
-  EXPECT_NEAR(far_bound.energy_upper, near_bound.energy_upper, 1e-5 * std::abs(near_bound.energy_upper));
+  if (far < 1e14) {
+    const ErrorBound &near_bound = one.summary.error_bound.value(),
+                     &far_bound = other.summary.error_bound.value();
+    EXPECT_TRUE(far_bound.guaranteed);
+    EXPECT_NEAR(far_bound.value, near_bound.value, 0.02 * near_bound.value);
+    EXPECT_NEAR(far_bound.energy_upper, near_bound.energy_upper, 1e-5 * std::abs(near_bound.energy_upper));
+  } else if (other.summary.error_bound) {
+    // A pressure that is rounding works over such a gap.
+    EXPECT_TRUE(other.summary.error_bound->guaranteed);
+  }
   for (const ContactPart& part : other.contact)
     if (part.name == "bottom")
       for (std::size_t i = 0; i < part.gap.size(); ++i) {
@@ -46,7 +53,7 @@ void expect_same(Pose pose, const Method& method, Scheme scheme, double far) {
 TEST(FarGap, WorksAsWellAsANearOneThatIsNeverMet) {
   for (const Pose pose : {&membrane, &elastic})
     for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
-      for (const double gap : {1e2, 1e5, 1e9})
+      for (const double gap : {1e2, 1e5, 1e9, 1e14, 1e300, std::numeric_limits<double>::max()})
         for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
           SCOPED_TRACE(gap);
           expect_same(pose, method, scheme, gap);

@@ -223,6 +223,25 @@ TEST(Limits, TimeLimitWithinAnIterationKeepsTheOneBefore) {
   expect_iterate(accelerated_uzawa(contact, {1e-12, 10000}, uzawa, unknown), uzawa);
 }
 
+/// Lets the time run out between the iterate and its bound.
+class PausesBeforeTheBound : public Observer {
+ public:
+  void entered(Phase phase) override {
+    if (phase == Phase::certify) std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  }
+};
+
+TEST(Limits, TimeLimitBeforeTheBoundKeepsTheSolution) {
+  PausesBeforeTheBound observer;
+  const Solution solution = solve(problems::paper(Scheme::conforming, 4), {ActiveSet{}, 2.}, observer);
+  EXPECT_EQ(solution.summary.outcome, Outcome::time_limit);
+  EXPECT_FALSE(solution.summary.error_bound);
+  EXPECT_NE(solution.summary.advice.find("solver.time_limit"), std::string::npos) << solution.summary.advice;
+  ASSERT_FALSE(solution.summary.notes.empty());
+  EXPECT_TRUE(solution.summary.notes.back().starts_with("there is no error bound")) << solution.summary.notes.back();
+  EXPECT_NEAR(solution.summary.energy, solve(problems::paper(Scheme::conforming, 4), {ActiveSet{}, {}}).summary.energy, 1e-12);
+}
+
 class Stopper : public Observer {
  public:
   explicit Stopper(int after) : after_(after) {}

@@ -228,7 +228,7 @@ TEST(Sweep, TheTimeLimitIsForTheWhole) {
   const Problem problem = problems::paper(Scheme::nonconforming, 24);
   // To look through the entries takes a part of it.
   const std::vector<Variation> sweep(3000, data_of(problem, ""));
-  const Solution solution = solve_sweep(problem, sweep, {ActiveSet{}, sanitized ? 1.5 : 0.3});
+  const Solution solution = solve_sweep(problem, sweep, {ActiveSet{}, sanitized ? 3 : 0.3});
   EXPECT_EQ(solution.sweep.size(), sweep.size());
   EXPECT_EQ(solution.sweep.front().error, "");
   EXPECT_NE(solution.sweep.back().error.find("the time limit of "), std::string::npos);
