@@ -176,7 +176,8 @@ class Validation {
       return;
     }
     const std::size_t stride = stride_for(mesh.triangles.size() * TriangleRule::size, fields);
-    for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) {
+    for (std::size_t t = 0, asked = 0; t < mesh.triangles.size(); t += stride, ++asked) {
+      if (progress_ && asked % 64 == 0) progress_->check();
       const AffineMap map(mesh.corners(static_cast<int>(t)));
       for (const Point& reference : triangle_rule().points) evaluate(map(reference));
       evaluate(mesh.centroid(static_cast<int>(t)));
@@ -218,8 +219,8 @@ std::vector<Fault> validate(const Problem& problem, const std::vector<Variation>
 namespace {
 
 /// Adds the faults of the variations until so many steps are taken; then they are not complete.
-void check_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh, double most_of_field,
-                 double most_steps, Progress* progress, DataCheck& check) {
+void check_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh,
+                 double most_of_field, double most_steps, Progress* progress, DataCheck& check) {
   Problem varied = problem;
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     check.is_complete = check.is_complete && most_steps > 0;
