@@ -10,6 +10,7 @@
 #include "certify/gap_estimate.hpp"
 #include "certify/least_airy.hpp"
 #include "certify/least_potential.hpp"
+#include "certify/lost_digits.hpp"
 #include "certify/patch_pairs.hpp"
 #include "certify/relaxation.hpp"
 #include "certify/totals.hpp"
@@ -103,11 +104,13 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
   constexpr double equilibrium = 1e-9;
   if (solution.summary.residuals.equilibrium > equilibrium)
     unmet.push_back(
-        "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly incompressible "
+        "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly "
+        "incompressible "
         "or of so different stiffnesses: take Poisson's ratio further from 1/2, or a smaller contrast");
   const double tolerance = kOfGap * std::min(1., estimate_gap(problem, solution.stress, pair.v, progress));
   const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
-  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet()})
+  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet(),
+                              lost_digits(problem, solution.displacement.cwiseAbs().maxCoeff())})
     add(unmet, reasons);
   Totals totals(problem.triangles());
   Owners owners(problem.triangles());
@@ -134,9 +137,10 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
   totals.second_counts = carried.change_of_pressure == 0;
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
   const bool is_little = carried.norm <= kLittle * bound_from(totals).value;
-  totals.carried = is_little || !carried.is_held
-                       ? carried.norm
-                       : std::min(carried.norm, carried_by_motions(problem, laws, carried.loads, carried.root, progress));
+  totals.carried =
+      is_little || !carried.is_held
+          ? carried.norm
+          : std::min(carried.norm, carried_by_motions(problem, laws, carried.loads, carried.root, progress));
   totals.carried += std::sqrt(of_patches.square);
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);

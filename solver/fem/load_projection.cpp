@@ -11,7 +11,7 @@ namespace signorini {
 namespace {
 
 /// What an integral may be off by, relative to the largest load.
-constexpr ProjectionTolerance kTolerance{1e-9, 2e-5};
+constexpr ProjectionTolerance kTolerance{1e-9, 2e-5, 100 * kEnclosureRounding};
 
 /// Of each triangle: enough where the load is smooth, or jumps along a straight line.
 constexpr int kFirstCells = 4;
@@ -36,12 +36,15 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
     return;
   }
   double largest = 0;
-  for (int t = 0; t < count; ++t)
+  for (int t = 0; t < count; ++t) {
+    if (progress && t % 64 == 0) progress->check();
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
-  all_.assign(count, constant);
+  }
+  all_.reserve(count);
   std::vector<int> rough;
   for (int t = 0; t < count; ++t) {
     if (progress && t % 64 == 0) progress->check();
+    all_.push_back(constant);
     CellBudget budget{kFirstCells * body.size(), progress};
     const std::vector<std::string> known = unmet_;
     if (project_on(body, mesh.corners(t), largest, budget, all_[t])) continue;
@@ -52,9 +55,8 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {
     ProjectedLoad& load = all_[rough[i]] = constant;
-    budget.share(rough.size() - i, [&](CellBudget& own) {
-      project_on(body, mesh.corners(rough[i]), largest, own, load);
-    });
+    budget.share(rough.size() - i,
+                 [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load); });
   }
 }
 
@@ -70,7 +72,7 @@ bool LoadProjection::project_on(const VectorField& body, const std::array<Point,
       unmet_.push_back(field.name() + " is a function that is known in single points only: give a formula");
     Projection own;
     budget.share(body.size() - c, [&](CellBudget& part) {
-      own = project(field, corners, {kTolerance.fine * largest, kTolerance.rough * largest}, part);
+      own = project(field, corners, {kTolerance.fine * largest, kTolerance.rough * largest, kTolerance.rounding * largest}, part);
       is_enough = is_enough && part.cells > 0;
     });
     if (!own.is_finite && unmet_.empty())

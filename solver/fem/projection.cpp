@@ -10,6 +10,7 @@
 #include "fem/lagrange.hpp"
 #include "fem/triangle_pieces.hpp"
 #include "formula/interval.hpp"
+#include "formula/rounding.hpp"
 
 namespace signorini {
 namespace {
@@ -133,7 +134,11 @@ class Sampler {
  public:
   Sampler(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
           CellBudget& budget)
-      : field_(field), map_(corners), tolerances_(tolerance), budget_(budget), patient_until_(budget.cells - kFew) {
+      : field_(field),
+        map_(corners),
+        tolerances_(tolerance),
+        budget_(budget),
+        patient_until_(budget.cells - kFew) {
     const Field* fields[] = {&field};
     for_each_piece(
         fields, corners,
@@ -149,10 +154,13 @@ class Sampler {
  private:
   using Corners = std::array<Point, 3>;
 
-  /// By so many cells a function that is smooth meets the fine tolerance, unless the triangle is large beside its waves.
+  /// By so many cells a function that is smooth meets the fine tolerance, unless the triangle is large beside
+  /// its waves.
   static constexpr int kFew = 64;
 
-  double tolerance_now() const { return budget_.cells > patient_until_ ? tolerances_.fine : tolerances_.rough; }
+  double tolerance_now() const {
+    return budget_.cells > patient_until_ ? tolerances_.fine : tolerances_.rough;
+  }
 
   bool add_smooth(const Corners& cell, double share) {
     const Corners place{map_(cell[0]), map_(cell[1]), map_(cell[2])};
@@ -218,10 +226,30 @@ Samples sampled(const Field& function, const AffineMap& map) {
   return samples;
 }
 
-}  // namespace
+/// What the values on the triangle are off by, which changes little from place to place but where it is
+/// small.
+double rounding_on(const Field& field, const std::array<Point, 3>& corners, double none) {
+  if (!field.formula()) return 0;
+  const auto at = [&](const Point& x) { return rounding_of(*field.formula(), x.x(), x.y()); };
+  constexpr double little = 0.01;
+  double most = at((corners[0] + corners[1] + corners[2]) / 3);
+  if (most <= little * none) return 0;
+  for (const Point& corner : corners)
+    if (const double own = at(corner); std::isfinite(own)) most = std::max(most, own);
+  return most > none ? most : 0;
+}
 
-Projection project(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
-                   CellBudget& budget) {
+/// The values are not those of f, but those of a function that differs from it by so much.
+void add_rounding(double rounding, Projection& projection) {
+  projection.rest += rounding * std::sqrt(0.5);
+  projection.beyond_linear += rounding * std::sqrt(0.5);
+  projection.uncertain_force += rounding / 2;
+  projection.uncertain_work += rounding / 2;
+}
+
+/// As the values in doubles are.
+Projection project_values(const Field& field, const std::array<Point, 3>& corners,
+                          const ProjectionTolerance& tolerance, CellBudget& budget) {
   Projection own;
   if (const auto value = only_value(field, corners)) {
     own.quadratic.setConstant(*value);
@@ -242,6 +270,15 @@ Projection project(const Field& field, const std::array<Point, 3>& corners, cons
   own.uncertain_work = samples.work;
   own.jumps = samples.jumps;
   own.is_finite = samples.is_finite;
+  return own;
+}
+
+}  // namespace
+
+Projection project(const Field& field, const std::array<Point, 3>& corners,
+                   const ProjectionTolerance& tolerance, CellBudget& budget) {
+  Projection own = project_values(field, corners, tolerance, budget);
+  add_rounding(rounding_on(field, corners, tolerance.rounding), own);
   return own;
 }
 

@@ -28,6 +28,7 @@ struct Projection {
 /// as that would take are not worth it.
 struct ProjectionTolerance {
   double fine, rough;
+  double rounding = 0;  ///< of values, up to which it counts as none
 };
 
 /// As far as the budget lasts. What is no formula is taken for what it is in the points of a rule.

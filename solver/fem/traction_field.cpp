@@ -8,13 +8,17 @@
 #include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
+#include "formula/rounding.hpp"
 
 namespace signorini {
 namespace {
 
-/// What an integral may be off by, relative to the largest traction: where it is smooth, and around a point where it is
-/// not, which takes a cell for every half of it.
+/// What an integral may be off by, relative to the largest traction: where it is smooth, and around a point
+/// where it is not, which takes a cell for every half of it.
 constexpr double kTolerance = 1e-9, kToleranceOfRough = 1e-8;
+
+/// Of values, relative to the largest traction: less counts as none.
+constexpr double kRounding = 100 * kEnclosureRounding;
 
 /// Of all edges together.
 constexpr int kCells = 20'000;
@@ -44,8 +48,10 @@ class Projection {
     else
       add(Interval(0, 1));
     LocalVector moments = LocalVector::Zero(3);
-    for (std::size_t q = 0; q < points_.size(); ++q) moments += weights_[q] * values_[q] * edge_basis(2, points_[q]);
+    for (std::size_t q = 0; q < points_.size(); ++q)
+      moments += weights_[q] * values_[q] * edge_basis(2, points_[q]);
     nodes = project_onto_edge(2, moments);
+    if (field.formula()) add_rounding();
   }
 
   Eigen::Vector3d nodes;
@@ -73,9 +79,24 @@ class Projection {
     /// The middle of the values is off by no more.
     double radius() const { return (values.upper() - values.lower()) / 2; }
     bool operator<(const Cell& other) const {
-      return std::pair(radius() * length(), length()) < std::pair(other.radius() * other.length(), other.length());
+      return std::pair(radius() * length(), length()) <
+             std::pair(other.radius() * other.length(), other.length());
     }
   };
+
+  /// The values are not those of the scalar, but those of one that differs from it by so much.
+  void add_rounding() {
+    double most = 0;
+    for (const double s : {0., 0.5, 1.}) {
+      const auto [x, n] = edge_.mesh.on_boundary(edge_.edge, s);
+      const double own = rounding_of(*field_.formula(), x.x(), x.y(), n.x(), n.y());
+      if (std::isfinite(own)) most = std::max(most, own);
+    }
+    if (most <= kRounding * largest_) return;
+    force += most;
+    work += most;
+    value_square_ += most * most;
+  }
 
   void cut(CellBudget& budget) {
     look_at(Interval(0, 1));

@@ -9,6 +9,7 @@
 
 #include "fem/triangle_pieces.hpp"
 #include "formula/enclosure.hpp"
+#include "formula/rounding.hpp"
 #include "formula/series.hpp"
 #include "formula/taylor_model.hpp"
 #include "problem/field.hpp"
@@ -141,6 +142,30 @@ TEST(Formula, OfAPolynomialIsKnownExactly) {
   const TaylorModel model = parse_formula("(1 + x - 2*y)^2 * (3 - x*y) / 4", false).evaluate(enclosure);
   EXPECT_EQ(model.remainder(), 0);
   EXPECT_EQ(model.degree(), 4);
+}
+
+/// Against the same number, written without cancellation.
+TEST(Formula, KnowsWhatRoundingTakesFromItsValues) {
+  const std::pair<const char*, const char*> pairs[] = {
+      {"(1-cos(1e-8*x))*2e16", "x^2"},        {"(1e6+x)^2-1e12-2e6*x", "x^2"},
+      {"(x+1e16)-1e16", "x"},                 {"sqrt(1e14+2e7*x+x*x)-1e7", "x"},
+      {"log(exp(1e-9*x))*1e9", "x"},          {"cosh(9*x)^2-sinh(9*x)^2", "1"},
+      {"(exp(1e-7*x)-1)*1e7", "x+0.5e-7*x*x"}, {"(x<2 ? x+1e9 : 0)-1e9", "x"},
+      {"tan(atan(1e7+x))-1e7", "x"},          {"min(x+1e12,2e12)-1e12", "x"}};
+  for (const auto& [text, plain] : pairs) {
+    const Formula formula = parse_formula(text, false), same = parse_formula(plain, false);
+    double most = 0;
+    for (const double x : {0.1, 0.37, 0.7132, 0.99}) {
+      const double error = std::abs(formula(x, 0) - same(x, 0)), rounding = rounding_of(formula, x, 0);
+      EXPECT_LE(error, 1.1 * rounding) << text << " at " << x;
+      most = std::max(most, error / rounding);
+    }
+    EXPECT_GE(most, 1e-3) << text;
+  }
+  for (const char* text : {"x^2*y", "sin(3*x)+2", "x<0.3 ? 10 : -10", "exp(-9*x)*sqrt(x+y)", "abs(x-y)+1"}) {
+    const Formula formula = parse_formula(text, false);
+    EXPECT_LE(rounding_of(formula, 0.6, 0.1), 1e-14 * std::abs(formula(0.6, 0.1))) << text;
+  }
 }
 
 TEST(Formula, TellsWhatItCannotRead) {

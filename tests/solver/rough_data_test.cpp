@@ -1,4 +1,6 @@
 // The bound where data are not smooth: along sides, at points, or nowhere.
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "problems/membrane.hpp"
@@ -47,10 +49,60 @@ TEST(RoughData, NoiseCostsTheBoundAndNotTheGuarantee) {
   EXPECT_TRUE(std::isfinite(with_load("sin(12345.678*x)*43758.5453-rint(sin(12345.678*x)*43758.5453)-3")));
 }
 
+/// x², x and x as doubles have them where large numbers cancel; the energies are those of the plain text.
+TEST(RoughData, WhatRoundingTakesFromALoadIsInTheBound) {
+  const auto holds = [](const std::string& load, const std::string& plain) {
+    Problem problem = square();
+    problem.mesh.fineness = Divisions{16, 16};
+    problem.body = problems::formula(plain);
+    const ErrorBound given = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+    problem.body = problems::formula(load);
+    const ErrorBound bound = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+    EXPECT_TRUE(bound.guaranteed) << load;
+    EXPECT_LE(bound.energy_lower, given.energy_upper) << load;
+    EXPECT_GE(bound.energy_upper, given.energy_lower) << load;
+  };
+  holds("(1-cos(1e-8*x))*2e16", "x^2");
+  holds("(1e6+x)^2-1e12-2e6*x", "x^2");
+  holds("(x+1e16)-1e16", "x");
+  holds("(x+1e12)-1e12", "x");
+}
+
+TEST(RoughData, WhatRoundingTakesFromATractionIsInTheBound) {
+  Problem problem = square();
+  problem.boundary["top"] = Traction{problems::formula("x")};
+  const ErrorBound given = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+  problem.boundary["top"] = Traction{problems::formula("(x+1e15)-1e15")};
+  const ErrorBound bound = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+  EXPECT_TRUE(bound.guaranteed);
+  EXPECT_LE(bound.energy_lower, given.energy_lower);
+  EXPECT_GE(bound.energy_upper, given.energy_upper);
+}
+
+TEST(RoughData, GapsFixedValuesAndLawsThatLoseTheirDigitsAreNamed) {
+  const auto unmet = [](const std::function<void(Problem&)>& change) {
+    Problem problem = square();
+    problem.body = Field(-1);
+    change(problem);
+    const ErrorBound bound = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+    return bound.unmet.empty() ? std::string() : bound.unmet.front();
+  };
+  const std::string text = "1+((0.1*x+1e15)-1e15)";
+  const auto is_named = [&](const std::function<void(Problem&)>& change) {
+    return unmet(change).find("so large that rounding leaves it too few digits") != std::string::npos;
+  };
+  EXPECT_TRUE(is_named([&](Problem& p) { p.boundary["bottom"] = Contact{problems::formula(text)}; }));
+  EXPECT_TRUE(is_named([&](Problem& p) { p.boundary["left"] = Fixed{problems::formula(text)}; }));
+  EXPECT_TRUE(
+      is_named([&](Problem& p) { p.material = MembraneStiffness::isotropic(problems::formula(text)); }));
+  EXPECT_EQ(unmet([](Problem& p) { p.boundary["bottom"] = Contact{problems::formula("1+0.1*x")}; }), "");
+}
+
 TEST(RoughData, AGapThatFallsFromASupportLikeARootIsMet) {
   Problem problem = square();
   problem.body = Field(-1);
-  problem.boundary = {{"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Contact{problems::formula("sqrt(x)")}}};
+  problem.boundary = {
+      {"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Contact{problems::formula("sqrt(x)")}}};
   EXPECT_LE(relative_bound(problem), 0.45);
 }
 
