@@ -133,6 +133,29 @@ std::vector<Fault> crossing_edges(const Rings& given, const Rings& unit) {
   return faults;
 }
 
+/// Sharper ones, inside or outside the domain, CGAL's mesher does not tell from none: from 1e-8 on, where the
+/// cosine is 1, it loses its clusters of edges and the process with them.
+constexpr double least_angle = 1e-6;
+
+std::vector<Fault> sharp_angles(const Rings& given, const Rings& unit) {
+  FaultList sharp("/domain", "more angles that are so sharp");
+  for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge) {
+    const int tip = unit.next(edge);
+    const Vector back = unit.points[edge] - unit.points[tip],
+                 forth = unit.points[unit.next(tip)] - unit.points[tip];
+    const double sine = (back.x() * forth.y() - back.y() * forth.x()) / (back.norm() * forth.norm());
+    if (back.dot(forth) < 0 || std::abs(sine) >= least_angle) continue;
+    sharp.add(unit.pointer_to(tip),
+              "the edges that meet at " + to_string(given.points[tip]) +
+                  " have an angle of less than 1e-6 between them: move their other ends "
+                  "apart, or leave this vertex out");
+    if (sharp.is_full()) break;
+  }
+  std::vector<Fault> faults;
+  std::move(sharp).append_to(faults);
+  return faults;
+}
+
 std::vector<Segment> edges_of_ring(const Rings& rings, int ring) {
   std::vector<Segment> edges;
   for (int e = rings.begin[ring]; e < rings.begin[ring + 1]; ++e) edges.push_back(edge_of(rings, e));
@@ -212,6 +235,7 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
   if (faults.empty()) faults = crossing_edges(given, unit);
   if (faults.empty()) faults = misplaced_holes(unit);
   if (faults.empty()) faults = narrow_faults(given, unit);
+  if (faults.empty()) faults = sharp_angles(given, unit);
   return faults;
 }
 

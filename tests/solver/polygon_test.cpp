@@ -250,6 +250,27 @@ TEST(PolygonFaults, AreAllNamed) {
     }
 }
 
+/// As a hole and as a notch: the mesher ends the process where they are sharper than 1e-8.
+TEST(PolygonFaults, AreAnglesThatAreTooSharp) {
+  const auto with_hole = [](double width) {
+    Polygon polygon;
+    polygon.vertices = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    polygon.holes = {{{0.1, 0.5}, {0.9, 0.5}, {0.9, 0.5 + width}}};
+    return polygon;
+  };
+  const auto with_notch = [](double width) {
+    Polygon polygon;
+    polygon.vertices = {{0, 0}, {1, 0}, {1, 0.5}, {0.2, 0.5}, {1, 0.5 + width}, {1, 1}, {0, 1}};
+    return polygon;
+  };
+  for (const double width : {1e-7, 1e-8, 1e-9}) {
+    EXPECT_EQ(validate(with_hole(width)).at(0).where, "/domain/holes/0/0") << width;
+    EXPECT_EQ(validate(with_notch(width)).at(0).where, "/domain/vertices/3") << width;
+  }
+  EXPECT_TRUE(validate(with_hole(1e-5)).empty());
+  EXPECT_TRUE(validate(with_notch(1e-5)).empty());
+}
+
 TEST(PolygonFaults, AreCountedBehindTheTenth) {
   Polygon star;
   for (int i = 0; i < 301; ++i) {
