@@ -55,6 +55,8 @@ StopSignals::StopSignals() {
   sem_init(&arrived, 0, 0);
   stops = hangups = 0;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, note_arrival);
+  // A file that may not grow is an error of the write, as on a full disk.
+  handle(SIGXFSZ, SIG_IGN);
   const sigset_t set = taken_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }

@@ -64,6 +64,11 @@ bool Connection::has_left() const {
   return ::poll(&polled, 1, 0) > 0;
 }
 
+bool Connection::is_gone() const {
+  pollfd polled{socket_, 0, 0};
+  return ::poll(&polled, 1, 0) > 0;
+}
+
 Receipt Connection::receive() {
   std::array<char, 16 * 1024> bytes;
   const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);

@@ -45,6 +45,8 @@ class Connection {
   const std::string& remote_address() const { return remote_address_; }
   /// Whether the client has closed the connection, its sending side at least.
   bool has_left() const;
+  /// Whether the client takes no more: it has reset the connection, or both sides have closed it.
+  bool is_gone() const;
 
   void keep_place(std::shared_ptr<void> place) { place_ = std::move(place); }
 

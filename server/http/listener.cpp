@@ -135,6 +135,13 @@ Task task_of(const Connection& connection, std::function<void()> work) {
   return {std::move(work), network_of(connection.remote_address()), std::chrono::steady_clock::now()};
 }
 
+/// For a client who takes the reply, though it may have closed its sending side.
+Task reply_to(const std::shared_ptr<Connection>& connection, std::function<void()> work) {
+  Task task = task_of(*connection, std::move(work));
+  task.is_unwanted = [connection] { return connection->is_gone(); };
+  return task;
+}
+
 /// For a client who has to be there still, in the order in which bodies are read.
 Task reading_of(const std::shared_ptr<Connection>& connection, std::function<void()> work) {
   Task task = task_of(*connection, std::move(work));
@@ -250,7 +257,7 @@ class Listener::Impl {
       crew.enqueue(reading_of(connection, serve_by(crew)));
     } else {
       Crew& crew = message.refusal ? takers_ : crew_for_reply(message);
-      crew.enqueue(task_of(*connection, serve_by(crew)));
+      crew.enqueue(reply_to(connection, serve_by(crew)));
     }
   }
 

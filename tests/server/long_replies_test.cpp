@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include <sys/socket.h>
+
 #include "child_process.hpp"
 #include "example_problems.hpp"
 #include "long_tests.hpp"
@@ -89,6 +91,26 @@ TEST_F(LongReplies, LeaveTheServiceToOthers) {
   EXPECT_LT(most_are_within(list), 1s);
   EXPECT_LT(most_are_within(summary), 1s);
   EXPECT_LT(most_are_within(health), 100ms);
+}
+
+/// A picture is whole before the first of it is sent. Once all were made, while new connections found no
+/// room.
+TEST_F(LongReplies, AreNotMadeForClientsThatAreGone) {
+  const std::string picture = "/v1/solves/" + id_ + "/picture.svg";
+  time_of(picture);
+  const Clock::duration alone = time_of(picture);
+  constexpr int many = 500;
+  std::vector<RawClient> clients;
+  for (int i = 0; i < many; ++i) {
+    clients.emplace_back(port());
+    clients.back().send("GET " + picture + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  for (RawClient& client : clients) {
+    const linger reset{1, 0};
+    setsockopt(client.socket(), SOL_SOCKET, SO_LINGER, &reset, sizeof(reset));
+    client.close();
+  }
+  EXPECT_LT(time_of(picture), many / 10 * alone);
 }
 
 /// Once each of them cost a copy of the result, and some more.
@@ -178,11 +200,11 @@ class SlowReaders : public ServiceTest {
 
 /// They give back what they hold when somebody else wants a result for which there is no memory.
 TEST_F(SlowReaders, AreLeftWhereTheyStandInTheWay) {
+  client_.set_read_timeout(120);
   std::vector<std::string> ids;
   for (int i = 0; i < 2; ++i)
-    ids.push_back(json::parse(post("huge", "?wait=20&fields=summary")->body).at("id"));
+    ids.push_back(json::parse(post("huge", "?wait=100&fields=summary")->body).at("id"));
   const auto path = [&](int i) { return "/v1/solves/" + ids[i] + "/result"; };
-  client_.set_read_timeout(60);
   ASSERT_GT(get(path(1))->body.size(), 8 * megabyte);
   std::vector<RawClient> deaf;
   deaf.push_back(deaf_client(service_.port(), path(0)));
