@@ -76,7 +76,7 @@ def account(run, report):
     if run.guaranteed and run.interval[0] > run.interval[1] + rounding(run):
         report.contradictions.append(f"{run.name}: lower above upper, {run.interval}")
     if run.summary["outcome"] == "converged":
-        limit = 1e-9 if run.summary["method"] == "active_set" else run.document["solver"].get("tolerance", 1e-8)
+        limit = 1e-9 if run.summary["method"] == "active_set" else run.document.get("solver", {}).get("tolerance", 1e-8)
         for residual in ("penetration", "tension", "complementarity"):
             if run.summary["residuals"][residual] > limit:
                 report.broken.append(f"{run.name}: {run.summary['method']} converged with the {residual} "
@@ -103,8 +103,10 @@ def compare_units(run, scaled, natural, report):
     same("guaranteed", run.guaranteed, scaled.guaranteed)
     factor = UNITS[2] * UNITS[1] ** 2
     off = abs(scaled.summary["energy"] / factor - run.summary["energy"])
-    # An iteration stops where its tolerance lets it.
-    if off > 1e3 * rounding(run, natural):
+    # An iteration stops where its tolerance lets it; where cells end before a load is resolved they may end elsewhere,
+    # which the bound pays for.
+    paid_for = 0.01 * (run.interval[1] - run.interval[0]) if run.guaranteed else 0
+    if off > max(1e3 * rounding(run, natural), paid_for):
         report.broken.append(f"other units: the energy is {scaled.summary['energy'] / factor:.12g}, "
                              f"was {run.summary['energy']:.12g}")
 

@@ -270,7 +270,7 @@ TEST_F(Solves, AreValidatedByWhatTheSolveRefuses) {
 }
 
 TEST_F(Solves, StreamALargeResultPlainAndCompressed) {
-  const std::string id = json::parse(post("large", "?wait=5&fields=summary")->body).at("id");
+  const std::string id = json::parse(post("large", "?wait=60&fields=summary")->body).at("id");
   const std::string path = "/v1/solves/" + id + "/result";
   const auto plain = client_.Get(path);
   ASSERT_TRUE(plain);

@@ -181,7 +181,7 @@ TEST(Limits, TimeLimitBeforeAnyIterateIsAnError) {
 
 TEST(Limits, TimeLimitKeepsTheLastIterate) {
   const Solution solution =
-      solve(problems::paper(Scheme::conforming, 8), {PaperUzawa{1e-9, 1, 1, 1e-14, 1000000}, 0.05});
+      solve(problems::paper(Scheme::conforming, 8), {PaperUzawa{1e-9, 1, 1, 1e-14, 1000000}, 0.5});
   EXPECT_EQ(solution.summary.outcome, Outcome::time_limit);
   EXPECT_GT(solution.summary.iterations, 0);
 }
