@@ -60,13 +60,11 @@ Connection::~Connection() {
 }
 
 bool Connection::has_left() const {
-  pollfd polled{socket_, POLLRDHUP, 0};
-  return ::poll(&polled, 1, 0) > 0;
+  return poll_until(socket_, POLLRDHUP, Clock::now());
 }
 
 bool Connection::is_gone() const {
-  pollfd polled{socket_, 0, 0};
-  return ::poll(&polled, 1, 0) > 0;
+  return poll_until(socket_, 0, Clock::now());
 }
 
 Receipt Connection::receive() {
