@@ -110,7 +110,7 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
   const double tolerance = kOfGap * std::min(1., estimate_gap(problem, solution.stress, pair.v, progress));
   const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
   for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet(),
-                              lost_digits(problem, solution.displacement.cwiseAbs().maxCoeff())})
+                              lost_digits(problem, solution.displacement.cwiseAbs().maxCoeff(), progress)})
     add(unmet, reasons);
   Totals totals(problem.triangles());
   Owners owners(problem.triangles());

@@ -33,7 +33,7 @@ std::string reason(const Field& field, const Point& x) {
 
 }  // namespace
 
-std::vector<std::string> lost_digits(const Discretization& problem, double displacement) {
+std::vector<std::string> lost_digits(const Discretization& problem, double displacement, Progress& progress) {
   const Mesh& mesh = problem.mesh;
   std::vector<std::string> all;
   const Material& material = problem.problem.material;
@@ -41,6 +41,7 @@ std::vector<std::string> lost_digits(const Discretization& problem, double displ
   for (const Field* field : fields_of(material)) {
     if (!field->formula()) continue;
     for (int t = 0; t < problem.triangles(); ++t) {
+      progress.check_in(t);
       const Point x = mesh.centroid(t);
       if (has_digits(*field, x, none, 0) || has_digits(*field, x, none, scale_of(material, *field, x)))
         continue;

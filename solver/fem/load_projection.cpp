@@ -37,7 +37,7 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   }
   double largest = 0;
   for (int t = 0; t < count; ++t) {
-    if (progress && t % 64 == 0) progress->check();
+    if (progress) progress->check_in(t);
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
   }
   all_.reserve(count);
@@ -72,7 +72,9 @@ bool LoadProjection::project_on(const VectorField& body, const std::array<Point,
       unmet_.push_back(field.name() + " is a function that is known in single points only: give a formula");
     Projection own;
     budget.share(body.size() - c, [&](CellBudget& part) {
-      own = project(field, corners, {kTolerance.fine * largest, kTolerance.rough * largest, kTolerance.rounding * largest}, part);
+      own = project(field, corners,
+                    {kTolerance.fine * largest, kTolerance.rough * largest, kTolerance.rounding * largest},
+                    part);
       is_enough = is_enough && part.cells > 0;
     });
     if (!own.is_finite && unmet_.empty())

@@ -6,6 +6,7 @@
 #include "formula/evaluation.hpp"
 
 namespace signorini {
+
 int operands(Operation operation) {
   if (operation < Operation::negate) return 0;
   if (operation < Operation::add) return 1;

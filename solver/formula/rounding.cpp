@@ -21,7 +21,7 @@ double times(double slope, double error) {
   return error == 0 ? 0 : std::abs(slope) * error;
 }
 
-/// Of a function that begins in `distance` from here like a root: there a slope says too much.
+/// Of a function that begins like a root: near that point its slope says too much.
 double of_root(double slope, double error) {
   return std::min(times(slope, error), 2 * std::sqrt(error));
 }
