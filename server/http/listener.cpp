@@ -26,7 +26,7 @@
 namespace signorini::server {
 namespace {
 
-constexpr int backlog = 1024;
+constexpr int backlog = SOMAXCONN;
 constexpr int nowhere = -1;
 
 /// Some more than there are cores, for those that wait for the disk.

@@ -83,6 +83,8 @@ void Lobby::run() {
   for (;;) {
     std::array<epoll_event, 64> events;
     const int count = epoll_wait(epoll_, events.data(), events.size(), look_around_ms);
+    // Who waits at the door of a busy lobby would find it locked again each time.
+    while (at_door_ > 0) std::this_thread::yield();
     const std::lock_guard lock(mutex_);
     if (stopping_) return;
     for (int i = 0; i < count; ++i) {
@@ -101,7 +103,9 @@ void Lobby::run() {
 }
 
 void Lobby::enter(Guest guest) {
+  ++at_door_;
   const std::lock_guard lock(mutex_);
+  --at_door_;
   if (stopping_) return;
   const int socket = guest.connection->socket();
   const auto entered = guests_.emplace(socket, std::move(guest)).first;
@@ -160,7 +164,8 @@ void Lobby::judge_body(Guests::iterator found) {
     guest.stay = Stay::queued_with_long_body;
     ++queued_;
     listen_to(guest);
-    let_in_long_bodies();
+    // The queue is looked through once for all that have come.
+    ::eventfd_write(wake_event_, 1);
   } else if (reader.expects_continue()) {
     reader.told_to_continue();
     guest.connection->send_at_once(go_on);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -102,6 +103,7 @@ class Lobby {
   Places places_;
   Places long_bodies_;  ///< one a byte
 
+  std::atomic<int> at_door_ = 0;  ///< who wait for the lock to enter
   std::mutex mutex_;
   bool stopping_ = false;
   Guests guests_;
