@@ -15,6 +15,9 @@ namespace {
 /// mend.
 constexpr int kMostLooks = 4;
 
+/// What is rounding, and so many iterations in a row do not halve, does not fall any more.
+constexpr int kMostStalls = 4;
+
 /// D^(-1/2) S D^(-1/2), D the diagonal of S, as Spectra asks for its products.
 class ScaledComplement {
  public:
@@ -82,12 +85,15 @@ class Iterate {
       release();
     else if (!conjugate_step())
       expand();
+    const double violation = largest_violation();
+    stalls_ = is_rounding() && violation >= least_violation_ / 2 ? stalls_ + 1 : 0;
+    least_violation_ = std::min(least_violation_, violation);
     return record();
   }
 
   const Eigen::VectorXd& clearance() const { return lambda_; }
 
-  bool meets(double tolerance) const { return residuals().largest() <= tolerance || is_rounding(); }
+  bool meets(double tolerance) const { return residuals().largest() <= tolerance || stalls_ >= kMostStalls; }
 
   /// From now on.
   void compare_with(const BodyState& body) {
@@ -108,13 +114,18 @@ class Iterate {
     return contact_residuals(lambda_, g_.cwiseQuotient(contact_.weight), contact_.weight, mean_stress_);
   }
 
+  /// Of the forces that open unknowns still have, and of what pulls at closed ones.
+  double largest_violation() const {
+    double largest = 0;
+    for (Eigen::Index i = 0; i < g_.size(); ++i)
+      largest = std::max(largest, lambda_[i] > 0 ? std::abs(g_[i]) : -g_[i]);
+    return largest;
+  }
+
   /// Whether no violation can be told from the rounding of S λ − c.
   bool is_rounding() const {
-    const double rounding = kRounding * (diagonal_.maxCoeff() * lambda_.lpNorm<Eigen::Infinity>() +
-                                         contact_.c.lpNorm<Eigen::Infinity>());
-    for (Eigen::Index i = 0; i < g_.size(); ++i)
-      if ((lambda_[i] > 0 ? std::abs(g_[i]) : -g_[i]) > rounding) return false;
-    return true;
+    return largest_violation() <= kRounding * (diagonal_.maxCoeff() * lambda_.lpNorm<Eigen::Infinity>() +
+                                               contact_.c.lpNorm<Eigen::Infinity>());
   }
 
   /// Of the longest step with which the expansion still never raises the energy.
@@ -234,6 +245,8 @@ class Iterate {
   Eigen::VectorXd free_gradient_, z_;  ///< g there, else 0; B times it
   Eigen::VectorXd direction_, s_direction_;
   double curvature_ = 0;  ///< dᵀ S d
+  double least_violation_ = std::numeric_limits<double>::infinity();
+  int stalls_ = 0;  ///< iterations among rounding since it was halved
 };
 
 }  // namespace

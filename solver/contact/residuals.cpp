@@ -15,9 +15,19 @@ double relative(double value, double scale) {
   return scale > 0 ? value / scale : 1;
 }
 
+/// Displacements below this part of the clearances are rounding.
+constexpr double kSmall = 1e-12;
+
+double largest(const Eigen::VectorXd& values) {
+  return values.size() > 0 ? values.lpNorm<Eigen::Infinity>() : 0;
+}
+
 /// ‖σ_h‖ in L2, gathered triangle by triangle, and the sizes that tell it from rounding.
 class StressNorm {
  public:
+  explicit StressNorm(const Eigen::VectorXd& clearance)
+      : clearance_(largest(clearance)), largest_term_(kSmall * clearance_) {}
+
   /// `strain` is M σ and `rise` Bᵀ u, the terms of the first equation.
   void add(const LocalMatrix& compliance, const LocalMatrix& stress_mass, const LocalVector& sigma,
            const LocalVector& strain, const LocalVector& rise) {
@@ -37,14 +47,12 @@ class StressNorm {
   double value() const { return std::max(std::sqrt(square_), no_stress()); }
 
   /// The same beside pressures, which have the rounding of clearances too.
-  double value_beside(const Eigen::VectorXd& clearance) const {
-    return std::max(value(), small_part_for(clearance.lpNorm<Eigen::Infinity>()));
-  }
+  double value_beside_pressures() const { return std::max(value(), small_part_for(clearance_)); }
 
  private:
   double small_part_for(double length) const { return 1e-4 * relative(length, largest_compliance_); }
 
-  double square_ = 0, largest_term_ = 0, largest_compliance_ = 0;
+  double clearance_, largest_term_, square_ = 0, largest_compliance_ = 0;
 };
 
 /// One pass over the triangles that gathers what the residuals of equilibrium, of the constitutive law and
@@ -60,7 +68,8 @@ class Balance {
         trace_(Eigen::VectorXd::Zero(traces_)),
         skew_(Eigen::VectorXd::Zero(problem.mesh.points.size())),
         skew_terms_(skew_),
-        shapes_(problem) {
+        shapes_(problem),
+        norm_(clearance) {
     for (int t = 0; t < problem.triangles(); ++t) add_triangle(t);
     compare_with_boundary(clearance);
     for (int point = 0; point < solution.rotation.size(); ++point)
@@ -68,7 +77,7 @@ class Balance {
   }
 
   double stress_norm() const { return norm_.value(); }
-  double stress_norm_beside(const Eigen::VectorXd& clearance) const { return norm_.value_beside(clearance); }
+  double stress_norm_beside_pressures() const { return norm_.value_beside_pressures(); }
 
   double equilibrium() const {
     const double size = std::sqrt(problem_.mesh.area());
@@ -196,7 +205,7 @@ double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
   struct Shape {
     LocalMatrix compliance, stress_mass;
   };
-  StressNorm norm;
+  StressNorm norm(clearance);
   PerShape<Shape> shapes(problem);
   const LocalMatrix& b = problem.spaces().divergence;
   for (int t = 0; t < problem.triangles(); ++t) {
@@ -207,7 +216,7 @@ double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
     norm.add(shape.compliance, shape.stress_mass, sigma, shape.compliance.lazyProduct(sigma),
              b.transpose().lazyProduct(u));
   }
-  return norm.value_beside(clearance) / std::sqrt(problem.mesh.area());
+  return norm.value_beside_pressures() / std::sqrt(problem.mesh.area());
 }
 
 double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
@@ -224,9 +233,9 @@ Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
     weight[i] = problem.clearance.rows[i].weight;
     if (problem.clearance.rows[i].unknown >= 0) tested.push_back(i);
   }
-  const ContactResiduals contact = contact_residuals(clearance(tested), pressure(tested), weight(tested),
-                                                     balance.stress_norm_beside(clearance) /
-                                                         std::sqrt(problem.mesh.area()));
+  const ContactResiduals contact =
+      contact_residuals(clearance(tested), pressure(tested), weight(tested),
+                        balance.stress_norm_beside_pressures() / std::sqrt(problem.mesh.area()));
   return {balance.equilibrium(), balance.constitutive(),  contact.penetration,
           contact.tension,       contact.complementarity, balance.symmetry()};
 }

@@ -86,7 +86,8 @@ TEST(Converged, IsWhatMovesWithoutStress) {
           problem.domain = Rectangle{{0, 0}, {length, length}};
           problem.mesh.fineness = Divisions{6, 5};
           problem.scheme = scheme;
-          problem.boundary = {{"bottom", Fixed{0.00833 * displacement}}, {"left", Contact{0.2043 * displacement}}};
+          problem.boundary = {{"bottom", Fixed{0.00833 * displacement}},
+                              {"left", Contact{0.2043 * displacement}}};
           const Summary summary = solve(problem, {method, {}}).summary;
           EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
           for (const std::string& note : summary.notes)
@@ -96,6 +97,20 @@ TEST(Converged, IsWhatMovesWithoutStress) {
           EXPECT_EQ(refined.outcome, Outcome::converged) << refined.advice;
           EXPECT_EQ(refined.levels.size(), 1u);
         }
+}
+
+/// The pressures of finer meshes have more rounding, which iterating on still mends.
+TEST(Converged, IsWhatMovesWithoutStressOnFineMeshes) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const Divisions& divisions : {Divisions{10, 14}, Divisions{40, 56}, Divisions{100, 10}}) {
+      if (sanitized && divisions.x > 20) continue;
+      Problem problem = problems::paper(scheme, 5);
+      problem.mesh.fineness = divisions;
+      problem.body = {};
+      problem.boundary = {{"left", Fixed{0.7}}, {"bottom", Contact{1}}};
+      const Summary summary = solve(problem, {AcceleratedUzawa{}, {}}).summary;
+      EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
+    }
 }
 
 /// The body rests, because the mesh sees nothing of a ridge that reaches through it.
@@ -115,6 +130,20 @@ TEST(Converged, IsABodyAtRestUnderARidgeThatTheMeshDoesNotSee) {
       return note.find("worth nothing") != std::string::npos;
     }));
   }
+}
+
+/// Its equilibrium cannot be told from rounding by its stress, which is nothing but that.
+TEST(Converged, IsAnElasticBodyAtRestUnderARidgeThatTheMeshDoesNotSee) {
+  Problem problem = problems::block(Scheme::nonconforming, Pattern::right, 1, 0.3);
+  problem.domain = Rectangle{{0, 0}, {1, 1}};
+  problem.mesh.fineness = Divisions{2, 2};
+  problem.boundary = {{"left", Contact{problems::formula("0.1-0.2*exp(-2000*(y-0.4)^2)")}},
+                      {"bottom", Fixed{VectorField(0, 0)}},
+                      {"top", Roller{}}};
+  const Summary summary = solve(problem, {ActiveSet{}, {}}).summary;
+  EXPECT_TRUE(summary.error_bound->guaranteed);
+  EXPECT_LE(summary.residuals.equilibrium, 1e-9);
+  EXPECT_GT(summary.error_bound->energy_upper, 0.01);
 }
 
 TEST(Converged, MeansThatTheResidualsAreMetOnRandomProblems) {
