@@ -157,11 +157,11 @@ void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
   relax_displacement(problem_, freedom, sweeps, points_, middles_, progress);
   CellBudget budget{kCellsOfGaps, &progress};
   for (const ContactEdge& contact : problem_.clearance.edges)
-    if (!touches(contact)) lower_below(contact, budget);
+    if (!follows_gap(contact)) lower_below(contact, budget);
 }
 
-bool AdmissibleDisplacement::touches(const ContactEdge& contact) const {
-  return clearance_[contact.rows[0]] <= 0 && clearance_[contact.rows[1]] <= 0;
+bool AdmissibleDisplacement::follows_gap(const ContactEdge& contact) const {
+  return off_gap_.contains(contact.edge);
 }
 
 const Lift* AdmissibleDisplacement::lift(int edge) const {
@@ -440,24 +440,39 @@ void AdmissibleDisplacement::meet(const ContactEdge& contact, CellBudget& budget
   const auto touches_in = [&](int point, int k) {
     return std::abs(n.dot(points_.col(point)) - gap_at(contact, k)) <= kSmall * scale_;
   };
-  if (touches(contact) && touches_in(a, 0) && touches_in(b, 1))
-    close(contact, budget);
+  if (follows_gap(contact) && touches_in(a, 0) && touches_in(b, 1))
+    close(contact);
   else
     lower_below(contact, budget);
 }
 
+/// Where a polynomial is off by more than the gap differs from a straight line, as where it has many waves on
+/// an edge, to stay below the gap is better than to follow it.
+void AdmissibleDisplacement::find_followed_gaps() {
+  for (const ContactEdge& contact : problem_.clearance.edges) {
+    if (clearance_[contact.rows[0]] > 0 || clearance_[contact.rows[1]] > 0) continue;
+    const Field& own = gap(contact);
+    const EdgeLine line(problem_.mesh, contact.edge);
+    const double ninth =
+        own.formula() ? largest_coefficient(own, line, Lift::kDegree + 1, small_coefficient()) : 0;
+    const double off = ninth * Lift::errors().over_bubble;
+    const double begin = line.value(own, 0), end = line.value(own, 1);
+    double bend = kNearly * scale_;
+    for (int i = 1; i < Lift::kDegree; ++i) {
+      const double s = 1. * i / Lift::kDegree;
+      bend = std::max(bend, std::abs(line.value(own, s) - (1 - s) * begin - s * end));
+    }
+    if (off <= bend) off_gap_.emplace(contact.edge, off);
+  }
+}
+
 /// v_n = g, but for what the polynomial is off by, as a multiple of the bubble 4 s (1 − s).
-void AdmissibleDisplacement::close(const ContactEdge& contact, CellBudget& budget) {
+void AdmissibleDisplacement::close(const ContactEdge& contact) {
   const int edge = contact.edge;
   const Eigen::VectorXd n = direction(contact);
-  const Field& own = gap(contact);
-  const double ninth = own.formula() ? largest_coefficient(own, EdgeLine(problem_.mesh, edge),
-                                                           Lift::kDegree + 1, small_coefficient())
-                                     : 0;
-  if (!std::isfinite(ninth)) return lower_below(contact, budget);
   middles_.col(edge) += room(contact, 0.5) * n;
   add_lift(edge, [&](double s) -> Eigen::VectorXd { return room(contact, s) * n; });
-  middles_.col(edge) -= ninth * Lift::errors().over_bubble * n;
+  middles_.col(edge) -= off_gap_.at(edge) * n;
 }
 
 BelowGap AdmissibleDisplacement::below_gap(const ContactEdge& contact, const EdgeLine& line) const {
@@ -467,13 +482,13 @@ BelowGap AdmissibleDisplacement::below_gap(const ContactEdge& contact, const Edg
           {room(contact, 0), room(contact, 1)}};
 }
 
-/// Where bubbles alone would be high, BelowGap::level(): v changes by what is linear on the triangles around a point, which
-/// keeps what is below the gap there.
+/// Where bubbles alone would be high, BelowGap::level(): v changes by what is linear on the triangles around
+/// a point, which keeps what is below the gap there.
 void AdmissibleDisplacement::lower_points(CellBudget& budget) {
   const Mesh& mesh = problem_.mesh;
   std::map<int, std::vector<PointConstraint>> lower;
   for (const ContactEdge& contact : problem_.clearance.edges) {
-    if (touches(contact) || !is_known_on_edges(gap(contact))) continue;
+    if (follows_gap(contact) || !is_known_on_edges(gap(contact))) continue;
     const EdgeLine line(mesh, contact.edge);
     double level = 0;
     budget.share(kShares, [&](CellBudget& own) { level = below_gap(contact, line).level(own); });

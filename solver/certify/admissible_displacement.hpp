@@ -89,8 +89,9 @@ class AdmissibleDisplacement {
   void fix_points(int edge, const Fixed& fixed);
   void admit(int point, std::vector<PointConstraint> constraints);
   void follow_traces();
-  /// The clearance is 0 at both ends.
-  bool touches(const ContactEdge& contact) const;
+  void find_followed_gaps();
+  /// The clearance is 0 at both ends, and a polynomial is near the gap between them.
+  bool follows_gap(const ContactEdge& contact) const;
   bool exceeds_gap(const ContactEdge& contact) const;
   void fix(const BoundaryPart& part, const Fixed& condition);
   void add_rest(int edge, const EdgeLine& line, const Field& field);
@@ -98,7 +99,7 @@ class AdmissibleDisplacement {
   void roll(const BoundaryPart& part);
   void lower_points(CellBudget& budget);
   void meet(const ContactEdge& contact, CellBudget& budget);
-  void close(const ContactEdge& contact, CellBudget& budget);
+  void close(const ContactEdge& contact);
   void lower_below(const ContactEdge& contact, CellBudget& budget);
   BelowGap below_gap(const ContactEdge& contact, const EdgeLine& line) const;
   void add_lift(int edge, const Values& d);
@@ -118,6 +119,7 @@ class AdmissibleDisplacement {
   double scale_;               ///< max |v|
   std::map<int, Eigen::VectorXd> fixed_points_;
   std::map<int, std::vector<PointConstraint>> constraints_;  ///< of contacts and rollers, by points
+  std::map<int, double> off_gap_;  ///< of edges that follow their gap: by how much, over the bubble
   std::map<int, Lift> lifts_;
   std::map<int, LiftRest> rests_;  ///< of u_D on edges
   std::vector<std::string> unmet_;
