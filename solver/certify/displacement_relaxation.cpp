@@ -64,10 +64,10 @@ const Eigen::Matrix<double, kNodes, 6>& products_with_loads() {
 }
 
 /// E as the map of slopes (xx, xy, yx, yy): their skew part, a rotation, makes no stress.
-Eigen::Matrix4d moduli_of(const Law<2>& law) {
+Eigen::Matrix4d moduli_of(const TensorMap<2>& stiffness) {
   Eigen::Matrix4d symmetric = Eigen::Matrix4d::Identity();
   symmetric.block<2, 2>(1, 1).setConstant(0.5);
-  return symmetric * law.stiffness * symmetric;
+  return symmetric * stiffness * symmetric;
 }
 
 /// What a triangle knows of the energy when the values inside it are the best.
@@ -80,15 +80,14 @@ struct Condensed {
 /// A modulus counts with its linear part on each triangle, as in relaxation.hpp.
 Condensed condensed(const AffineMap& map, bool is_constant, LawField<2>& law) {
   const std::vector<ReferenceProducts>& products = reference_products(is_constant);
-  std::vector<Eigen::Matrix4d> moduli(products.size(), Eigen::Matrix4d::Zero());
-  if (is_constant)
-    moduli[0] = moduli_of(law(map({0, 0})));
-  else
-    for (int q = 0; q < TriangleRule::size; ++q) {
-      static const CornerWeights weights = corner_weights();
-      const Eigen::Matrix4d own = moduli_of(law(map(triangle_rule().points[q])));
-      for (int z = 0; z < 3; ++z) moduli[z] += weights(z, q) * own;
-    }
+  std::vector<Eigen::Matrix4d> moduli;
+  if (is_constant) {
+    moduli.push_back(moduli_of(law(map({0, 0})).stiffness));
+  } else {
+    std::array<TensorMap<2>, TriangleRule::size> stiffness;
+    for (int q = 0; q < TriangleRule::size; ++q) stiffness[q] = law(map(triangle_rule().points[q])).stiffness;
+    for (const TensorMap<2>& corner : linear_modulus(stiffness)) moduli.push_back(moduli_of(corner));
+  }
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   Eigen::Matrix<double, 2 * kNodes, 2 * kNodes> all = decltype(all)::Zero();
   for (std::size_t k = 0; k < products.size(); ++k)

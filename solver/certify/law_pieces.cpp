@@ -401,7 +401,8 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
       if (own.is_known()) continue;
       if (unmet_.empty())
         unmet_.push_back("/material is not known to be positive definite and bounded near " +
-                         to_string(AffineMap(mesh.corners(t))(own.place({1. / 3, 1. / 3}))));
+                         to_string(AffineMap(mesh.corners(t))(own.place({1. / 3, 1. / 3}))) +
+                         ": refine the mesh where the law changes so much, or let it change less");
       take_as_in_points(material, mesh.corners(t), own);
     }
     LawPiece whole{pieces.front()};

@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include "certify/tensor.hpp"
 #include "fem/cubature.hpp"
 #include "fem/lagrange.hpp"
@@ -44,6 +46,24 @@ std::vector<Point> triangle_points();
 /// L2 projection onto P1.
 using CornerWeights = Eigen::Matrix<double, 3, TriangleRule::size>;
 CornerWeights corner_weights();
+
+/// A modulus as a linear function on a triangle, by its values at the corners: nearest in L2 to the one that is known in
+/// the points of the rule. Where a modulus jumps, what is nearest may be negative in a corner, and an energy with it has
+/// no minimum: then it is the mean.
+template <typename Matrix>
+std::array<Matrix, 3> linear_modulus(const std::array<Matrix, TriangleRule::size>& at_points) {
+  constexpr double least = 0.05;  // of the mean
+  static const CornerWeights weights = corner_weights();
+  std::array<Matrix, 3> corners;
+  for (int z = 0; z < 3; ++z) {
+    corners[z].setZero();
+    for (int q = 0; q < TriangleRule::size; ++q) corners[z] += weights(z, q) * at_points[q];
+  }
+  const Matrix mean = (corners[0] + corners[1] + corners[2]) / 3;
+  for (const Matrix& corner : corners)
+    if (Eigen::LLT<Matrix>(corner - least * mean).info() != Eigen::Success) return {mean, mean, mean};
+  return corners;
+}
 
 /// A function of P2 on a triangle with values in D components: column k < 3 its value at corner k, column
 /// 3 + e its value at the middle of local edge e.

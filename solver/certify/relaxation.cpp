@@ -94,20 +94,22 @@ class Curvature {
   void take_moduli(const Discretization& problem, Modulus of) {
     LawField<1> law(problem.problem.material);
     const bool constant = products_.size() == 1;
-    const CornerWeights weights = corner_weights();
+    const auto kept = [](const Eigen::Matrix2d& e) { return Eigen::Vector3d(e(0, 0), e(0, 1), e(1, 1)); };
     moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, problem.triangles());
     for (int t = 0; t < problem.triangles(); ++t) {
       const AffineMap map(mesh_.corners(t));
       const Eigen::Matrix2d inverse = map.jacobian.inverse();
-      const auto at = [&](const Point& x) -> Eigen::Vector3d {
-        const Eigen::Matrix2d e = map.determinant * inverse * of(law(x)) * inverse.transpose();
-        return {e(0, 0), e(0, 1), e(1, 1)};
+      const auto at = [&](const Point& x) -> Eigen::Matrix2d {
+        return map.determinant * inverse * of(law(x)) * inverse.transpose();
       };
-      if (constant)
-        moduli_.col(t) = at(mesh_.centroid(t));
-      else
-        for (int q = 0; q < TriangleRule::size; ++q)
-          moduli_.col(t).reshaped(3, 3) += at(map(triangle_rule().points[q])) * weights.col(q).transpose();
+      if (constant) {
+        moduli_.col(t) = kept(at(mesh_.centroid(t)));
+        continue;
+      }
+      std::array<Eigen::Matrix2d, TriangleRule::size> at_points;
+      for (int q = 0; q < TriangleRule::size; ++q) at_points[q] = at(map(triangle_rule().points[q]));
+      const std::array<Eigen::Matrix2d, 3> corners = linear_modulus(at_points);
+      moduli_.col(t) << kept(corners[0]), kept(corners[1]), kept(corners[2]);
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
 
 namespace signorini {
@@ -104,6 +105,38 @@ TEST(RoughData, AGapThatFallsFromASupportLikeARootIsMet) {
   problem.boundary = {
       {"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Contact{problems::formula("sqrt(x)")}}};
   EXPECT_LE(relative_bound(problem), 0.45);
+}
+
+/// A polynomial that follows it would rise above the rest of the body by many powers of ten.
+TEST(RoughData, AGapWithManyWavesOnAnEdgeIsStayedBelow) {
+  for (const char* gap : {"0.08+0.01*sin(3333*x)", "0.1+0.08*tanh(500*(x-0.41))"}) {
+    Problem problem = square();
+    problem.mesh.fineness = Divisions{5, 5};
+    problem.scheme = Scheme::nonconforming;
+    problem.body = Field(-3);
+    problem.boundary["bottom"] = Contact{problems::formula(gap)};
+    EXPECT_LE(relative_bound(problem), 0.3) << gap;
+  }
+}
+
+/// What is linear and nearest to such a modulus is negative in some corners, and no measure of energy.
+TEST(RoughData, AModulusThatJumpsInTrianglesIsBoundedOnEveryMesh) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const int refine : {0, 1, 2}) {
+      Problem body = problems::pressed_angle(scheme);
+      body.mesh.fineness = LargestEdge{0.3876};
+      body.mesh.refine = refine;
+      body.material = YoungPoisson{problems::formula("x<0.6934?1:18"), Field(0.3), Plane::strain};
+      body.body = VectorField(0.3, 0.1);
+      body.boundary = {{"bottom", Contact{}}, {"right", Fixed{VectorField(0, 0)}}};
+      EXPECT_LE(relative_bound(body), 1.2) << refine;
+      Problem membrane = square();
+      membrane.mesh.refine = refine;
+      membrane.scheme = scheme;
+      membrane.body = Field(-1);
+      membrane.material = MembraneStiffness::isotropic(problems::formula("x<0.6934?1:100"));
+      EXPECT_LE(relative_bound(membrane), 1.2) << refine;
+    }
 }
 
 TEST(RoughData, AMeshRefinesItselfForALoadWithoutSlopes) {
