@@ -18,7 +18,8 @@ namespace signorini::server {
 namespace {
 
 constexpr int attempts_allowed = 3;
-constexpr std::size_t piece_bytes = std::size_t{64} << 20;
+/// SQLite copies each as it writes it.
+constexpr std::size_t piece_bytes = std::size_t{4} << 20;
 constexpr const char* disk_is_full = "the disk of the data directory is full";
 
 // --- what can go wrong

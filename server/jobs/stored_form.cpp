@@ -22,15 +22,61 @@ std::size_t checked(std::size_t code) {
   return code;
 }
 
-std::string compress(const std::string& plain) {
-  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
-  checked(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, compression_level));
-  checked(ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1));
-  std::string packed(ZSTD_compressBound(plain.size()), '\0');
-  packed.resize(
-      checked(ZSTD_compress2(context.get(), packed.data(), packed.size(), plain.data(), plain.size())));
-  return packed;
-}
+/// Counts what is written to it.
+class ByteCount : public std::streambuf {
+ public:
+  std::size_t size() const { return size_; }
+
+ protected:
+  std::streamsize xsputn(const char*, std::streamsize count) override {
+    size_ += static_cast<std::size_t>(count);
+    return count;
+  }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+/// Compresses what is written to it, whose size has to be known: the packed bytes say it.
+class PackedBytes : public std::streambuf {
+ public:
+  explicit PackedBytes(std::size_t size) : context_(ZSTD_createCCtx(), ZSTD_freeCCtx) {
+    checked(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, compression_level));
+    checked(ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_checksumFlag, 1));
+    checked(ZSTD_CCtx_setPledgedSrcSize(context_.get(), size));
+    // What is not filled of it takes no memory.
+    packed_.reserve(ZSTD_compressBound(size));
+    setp(plain_.data(), plain_.data() + plain_.size());
+  }
+
+  /// Once all is written.
+  std::string finish() {
+    compress(ZSTD_e_end);
+    return std::move(packed_);
+  }
+
+ protected:
+  int_type overflow(int_type byte) override {
+    compress(ZSTD_e_continue);
+    setp(plain_.data(), plain_.data() + plain_.size());
+    return sputc(traits_type::to_char_type(byte));
+  }
+
+ private:
+  void compress(ZSTD_EndDirective directive) {
+    ZSTD_inBuffer in{pbase(), static_cast<std::size_t>(pptr() - pbase()), 0};
+    for (bool is_done = false; !is_done;) {
+      ZSTD_outBuffer out{some_.data(), some_.size(), 0};
+      const std::size_t left = checked(ZSTD_compressStream2(context_.get(), &out, &in, directive));
+      packed_.append(some_.data(), out.pos);
+      is_done = directive == ZSTD_e_end ? left == 0 : in.pos == in.size;
+    }
+  }
+
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context_;
+  std::array<char, 128 * 1024> plain_, some_;
+  std::string packed_;
+};
 
 std::runtime_error damaged() {
   return std::runtime_error("stored bytes are damaged");
@@ -98,17 +144,37 @@ std::string decompress(const std::string& packed) {
 }
 
 template <class... Values>
-std::string serialized(const Values&... values) {
-  std::ostringstream stream;
+void serialize_to(std::ostream& stream, const Values&... values) {
   cereal::PortableBinaryOutputArchive archive(stream);
   archive(values...);
+}
+
+template <class... Values>
+std::string serialized(const Values&... values) {
+  std::ostringstream stream;
+  serialize_to(stream, values...);
   return std::move(stream).str();
+}
+
+/// The values are written twice, first to know how long they are: what they are written to could be as large
+/// as they are.
+template <class... Values>
+std::string compressed(const Values&... values) {
+  ByteCount count;
+  std::ostream counted(&count);
+  serialize_to(counted, values...);
+  PackedBytes bytes(count.size());
+  std::ostream stream(&bytes);
+  serialize_to(stream, values...);
+  return bytes.finish();
 }
 
 }  // namespace
 
 std::string pack_text(const std::string& text) {
-  return compress(text);
+  PackedBytes bytes(text.size());
+  bytes.sputn(text.data(), static_cast<std::streamsize>(text.size()));
+  return bytes.finish();
 }
 
 std::string unpack_text(const std::string& bytes) {
@@ -128,8 +194,8 @@ Verdict unpack_verdict(const std::string& bytes) {
 }
 
 std::string pack_findings(const Ending& ending) {
-  if (ending.solution) return compress(serialized(true, *ending.solution));
-  return compress(serialized(false, ending.history ? *ending.history : std::vector<Iteration>()));
+  if (ending.solution) return compressed(true, *ending.solution);
+  return compressed(false, ending.history ? *ending.history : std::vector<Iteration>());
 }
 
 void unpack_findings(const ReadBytes& packed, JobResult& result) {

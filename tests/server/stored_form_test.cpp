@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "../problems/sanitized.hpp"
 #include "api/csv.hpp"
 #include "api/examples.hpp"
 #include "api/result_document.hpp"
 #include "api/vtu.hpp"
+#include "memory_meter.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/run.hpp"
 #include "solution_members.hpp"
@@ -93,6 +95,25 @@ TEST(StoredForm, KeepsWhatIsNotThere) {
   EXPECT_EQ(verdict.error->detail, "enough");
   EXPECT_FALSE(verdict.summary);
   EXPECT_FALSE(verdict.last_iteration);
+}
+
+/// There is no copy of them but the packed one.
+TEST(StoredForm, IsMadeInAsMuchMemoryAsTheFindingsTakeAtMost) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  Solution solution;
+  solution.sweep.resize(1000);
+  for (SweepEntry& entry : solution.sweep) {
+    entry.contact.resize(1);
+    entry.contact[0].clearance.resize(1000, 1.5);
+  }
+  const Ending ending = ending_of(std::move(solution));
+  const MemoryMeter memory;
+  const std::string packed = pack_findings(ending);
+  const std::size_t size = unpacked_size([&](std::size_t offset, std::span<char> room) {
+    return packed.copy(room.data(), room.size(), offset);
+  });
+  EXPECT_GT(size, 8'000'000);
+  EXPECT_LT(memory.peak(), 1.2 * static_cast<double>(size));
 }
 
 TEST(StoredForm, SeesDamage) {
