@@ -332,12 +332,12 @@ TEST_F(Hostile, ManyWhoAskAboutLongSweeps) {
   withstand([&] { ask_about(problem, 40, port()); }, 40 * megabyte);
 }
 
-/// A short body may be as costly as hundreds of looks: those do not wait behind 300 of them.
+/// A short body may be as costly as hundreds of looks: those do not wait behind 600 of them.
 TEST_F(Hostile, ManyWhoAskAboutShortSweeps) {
   json problem = membrane_on({{"type", "rectangle"}}, {{"divisions", {8, 8}}});
   for (int i = 0; i < 1000; ++i) problem["sweep"].push_back({{"load", {{"body", i}}}});
   ASSERT_LT(problem.dump().size(), 32u * 1024);
-  withstand([&] { ask_about(problem, 300, port()); }, 48 * megabyte);
+  withstand([&] { ask_about(problem, 600, port()); }, 48 * megabyte);
 }
 
 TEST_F(Hostile, FourWhoSendAByteASecond) {
