@@ -44,7 +44,7 @@ Lobby::~Lobby() {
 std::shared_ptr<void> Lobby::take_place() {
   std::shared_ptr<void> place = places_.take();
   if (place) return place;
-  const std::lock_guard lock(mutex_);
+  const auto lock = come_in();
   const auto oldest = std::ranges::min_element(
       guests_, {}, [](const Guests::value_type& guest) { return guest.second.since; });
   if (oldest == guests_.end()) return nullptr;
@@ -102,10 +102,15 @@ void Lobby::run() {
   }
 }
 
-void Lobby::enter(Guest guest) {
+std::unique_lock<std::mutex> Lobby::come_in() {
   ++at_door_;
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   --at_door_;
+  return lock;
+}
+
+void Lobby::enter(Guest guest) {
+  const auto lock = come_in();
   if (stopping_) return;
   const int socket = guest.connection->socket();
   const auto entered = guests_.emplace(socket, std::move(guest)).first;

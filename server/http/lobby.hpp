@@ -80,6 +80,8 @@ class Lobby {
   using Guests = std::map<int, Guest>;  ///< by socket
 
   void run();
+  /// For those who are not the lobby's own thread, which lets them go first.
+  std::unique_lock<std::mutex> come_in();
   void enter(Guest guest);
   void hear(int socket, std::uint32_t events);
   void judge(Guests::iterator guest);
