@@ -76,6 +76,17 @@ double largest_coefficient(const Field& field, const EdgeLine& line, int order, 
   return known;
 }
 
+/// How far a field is from the straight line between its values at the ends of the edge, in some points.
+double bend(const Field& field, const EdgeLine& line) {
+  const double begin = line.value(field, 0), end = line.value(field, 1);
+  double most = 0;
+  for (int i = 1; i < Lift::kDegree; ++i) {
+    const double s = 1. * i / Lift::kDegree;
+    most = std::max(most, std::abs(line.value(field, s) - (1 - s) * begin - s * end));
+  }
+  return most;
+}
+
 }  // namespace
 
 const Field& gap_on(const Discretization& problem, const ContactEdge& contact) {
@@ -456,13 +467,7 @@ void AdmissibleDisplacement::find_followed_gaps() {
     const double ninth =
         own.formula() ? largest_coefficient(own, line, Lift::kDegree + 1, small_coefficient()) : 0;
     const double off = ninth * Lift::errors().over_bubble;
-    const double begin = line.value(own, 0), end = line.value(own, 1);
-    double bend = kNearly * scale_;
-    for (int i = 1; i < Lift::kDegree; ++i) {
-      const double s = 1. * i / Lift::kDegree;
-      bend = std::max(bend, std::abs(line.value(own, s) - (1 - s) * begin - s * end));
-    }
-    if (off <= bend) off_gap_.emplace(contact.edge, off);
+    if (off <= kNearly * scale_ || off <= bend(own, line)) off_gap_.emplace(contact.edge, off);
   }
 }
 

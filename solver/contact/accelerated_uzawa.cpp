@@ -86,7 +86,7 @@ class Iterate {
     else if (!conjugate_step())
       expand();
     const double violation = largest_violation();
-    stalls_ = is_rounding() && violation >= least_violation_ / 2 ? stalls_ + 1 : 0;
+    stalls_ = violation <= rounding() && violation >= least_violation_ / 2 ? stalls_ + 1 : 0;
     least_violation_ = std::min(least_violation_, violation);
     return record();
   }
@@ -122,10 +122,10 @@ class Iterate {
     return largest;
   }
 
-  /// Whether no violation can be told from the rounding of S λ − c.
-  bool is_rounding() const {
-    return largest_violation() <= kRounding * (diagonal_.maxCoeff() * lambda_.lpNorm<Eigen::Infinity>() +
-                                               contact_.c.lpNorm<Eigen::Infinity>());
+  /// Of S λ − c: no violation below it can be told from it.
+  double rounding() const {
+    return kRounding *
+           (diagonal_.maxCoeff() * lambda_.lpNorm<Eigen::Infinity>() + contact_.c.lpNorm<Eigen::Infinity>());
   }
 
   /// Of the longest step with which the expansion still never raises the energy.
