@@ -74,9 +74,9 @@ constexpr std::uint64_t row_major_array = 40;
 constexpr std::uint64_t self_described = 55799;
 
 /// Reads the document item by item and writes it again.
-class Transcription {
+class CborTranscription {
  public:
-  Transcription(std::string_view bytes, DocumentWriter& out) : bytes_(bytes), out_(out) {}
+  CborTranscription(std::string_view bytes, DocumentWriter& out) : bytes_(bytes), out_(out) {}
 
   void run() {
     Item first = next();
@@ -262,7 +262,7 @@ std::optional<std::string> json_of_cbor(std::string_view bytes, std::size_t long
     return true;
   };
   const bool fits =
-      write_document(Format::json, sink, [&](DocumentWriter& out) { Transcription(bytes, out).run(); });
+      write_document(Format::json, sink, [&](DocumentWriter& out) { CborTranscription(bytes, out).run(); });
   return fits ? std::optional(std::move(text)) : std::nullopt;
 }
 

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint64_t row_major_tag = 40, int32_tag = 78, float64_tag = 86;
 
 /// Turns the events of a JSON parser into calls of a writer.
-class Transcription : public nlohmann::json_sax<nlohmann::json> {
+class JsonToCbor : public nlohmann::json_sax<nlohmann::json> {
  public:
-  explicit Transcription(DocumentWriter& out) : out_(out) {}
+  explicit JsonToCbor(DocumentWriter& out) : out_(out) {}
 
   bool null() override { return out_.null(), true; }
   bool boolean(bool truth) override { return out_.value(truth), true; }
@@ -44,7 +44,7 @@ class Transcription : public nlohmann::json_sax<nlohmann::json> {
 }  // namespace
 
 CborWriter& CborWriter::json(std::string_view text) {
-  Transcription transcription(*this);
+  JsonToCbor transcription(*this);
   nlohmann::json::sax_parse(text, &transcription);
   return *this;
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view end_of_line = "\r\n";
 
-std::string quoted(std::string_view text) {
+std::string quoted_field(std::string_view text) {
   std::string field = "\"";
   for (const char c : text) {
     if (c == '"') field += '"';
@@ -26,7 +26,7 @@ std::string field_of(std::string_view text) {
       !text.empty() && std::string_view("=+-@\t\r\n'").find(text.front()) != std::string_view::npos;
   if (guarded) field.insert(field.begin(), '\'');
   const bool plain = field.find_first_of(",\"\r\n") == std::string::npos;
-  return plain ? field : quoted(field);
+  return plain ? field : quoted_field(field);
 }
 
 void put_row(PieceWriter& out, const ContactPart& part, const std::string& name, std::size_t row) {

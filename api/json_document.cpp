@@ -134,10 +134,6 @@ class Builder : public nlohmann::json_sax<json> {
   std::vector<std::string> names_;  ///< the member being read of each open object
 };
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Walks along a text and knows what is in a string.
 class Strings {
  public:
@@ -161,6 +157,7 @@ class Strings {
 /// The library would keep all digits of a number, and copy them into what it says of it. A look at each so
 /// many bytes finds them.
 void refuse_long_numbers(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   Strings strings(text);
   for (std::size_t look = limits::digits; look < text.size(); look += limits::digits) {
     std::size_t begin = look, end = look;

@@ -10,7 +10,7 @@
 namespace signorini::api {
 namespace {
 
-constexpr double width = 720, left = 70, right = 30, frame = width - left - right;
+constexpr double width = 720, plot_left = 70, plot_right = 30, frame = width - plot_left - plot_right;
 
 std::string with_plot_styles(std::string_view styles) {
   return std::string(plot_styles) + std::string(styles);
@@ -53,8 +53,8 @@ void draw_strip(Svg& svg, const Strip& strip, const std::vector<double>& values,
     y.include(values[i]);
     curve.emplace_back(strip.lengths[i], values[i]);
   }
-  const Plot plot(svg, {left, top}, {frame, height}, {0, strip.lengths.empty() ? 0 : strip.lengths.back()},
-                  y);
+  const Plot plot(svg, {plot_left, top}, {frame, height},
+                  {0, strip.lengths.empty() ? 0 : strip.lengths.back()}, y);
   mark_closed(strip, plot);
   plot.draw_axes("arc length", name);
   plot.draw_curve(curve, "curve c0");
@@ -66,7 +66,7 @@ void draw_contact(const std::vector<ContactPart>& parts, PieceWriter& out) {
   constexpr double height = 150, between = 75, of_part = 2 * (height + between);
   Svg svg(out, width, std::max<double>(80, 20 + of_part * static_cast<double>(parts.size())), "Contact",
           with_plot_styles(".c0{stroke:#0b62a4}.closed{fill:#f3e2c7}"));
-  if (parts.empty()) svg.text({left, 40}, "No part of the boundary is a contact.", "name");
+  if (parts.empty()) svg.text({plot_left, 40}, "No part of the boundary is a contact.", "name");
   double top = 40;
   for (const ContactPart& part : parts) {
     const Strip strip{part, arc_lengths(part)};
@@ -99,10 +99,10 @@ void draw_history(const std::vector<Iteration>& history, PieceWriter& out) {
     for (const Curve& curve : curves)
       if (row.*curve.value > 0) y.include(row.*curve.value);
   if (!(y.high > 0)) y = {0.1, 1};
-  const Plot plot(svg, {left, top}, {frame, height}, {0, history.empty() ? 1. : history.back().number}, y,
-                  Plot::Scale::logarithmic);
+  const Plot plot(svg, {plot_left, top}, {frame, height}, {0, history.empty() ? 1. : history.back().number},
+                  y, Plot::Scale::logarithmic);
   plot.draw_axes("iteration", "");
-  double across = left;
+  double across = plot_left;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<Point> values;
     for (const Iteration& row : history) values.emplace_back(row.number, row.*curves[i].value);

@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto tick = 50ms;     // how late an event may be
-constexpr auto patience = 30s;  // with a client that takes nothing
+constexpr auto patience_with_readers = 30s;  // with a client that takes nothing
 constexpr int turns = 16;       // of one subscriber before the others have theirs
 
 }  // namespace
@@ -40,7 +40,7 @@ struct EventStreams::Subscriber {
   bool advance(std::chrono::milliseconds silence) {
     more = false;
     for (int turn = 0; turn < turns; ++turn) {
-      if (gone || !send_unsent()) return !gone && Clock::now() - last_sent < patience;
+      if (gone || !send_unsent()) return !gone && Clock::now() - last_sent < patience_with_readers;
       if (last) return false;
       fetch();
       if (unsent.empty() && Clock::now() - last_sent >= silence) unsent = ":\n\n";

@@ -11,7 +11,7 @@
 namespace signorini::server {
 namespace {
 
-constexpr int look_around_ms = 250;  // how late somebody is left
+constexpr int look_at_replies_ms = 250;  // how late somebody is left
 
 }  // namespace
 
@@ -62,13 +62,13 @@ void Hatch::run() {
   auto look_around = Clock::now();
   while (!is_over()) {
     std::array<epoll_event, 64> events;
-    const int count = epoll_wait(epoll_, events.data(), events.size(), look_around_ms);
+    const int count = epoll_wait(epoll_, events.data(), events.size(), look_at_replies_ms);
     {
       const std::lock_guard lock(mutex_);
       for (int i = 0; i < count; ++i) serve(events[i].data.fd);
       if (Clock::now() >= look_around) {
         leave_slow_ones();
-        look_around = Clock::now() + std::chrono::milliseconds(look_around_ms);
+        look_around = Clock::now() + std::chrono::milliseconds(look_at_replies_ms);
       }
     }
     for (Guest& guest : std::exchange(done_, {})) taken_(std::move(guest.connection), guest.goes_on);

@@ -43,7 +43,7 @@ std::size_t cores() {
 constexpr std::size_t readers = 8;
 
 /// How long a body that has come waits to be read.
-constexpr std::chrono::seconds patience{30};
+constexpr std::chrono::seconds patience_with_bodies{30};
 
 bool is_compressed(const Message& message) {
   return !message.body.empty() && !list_of(message, "Content-Encoding").empty();
@@ -283,7 +283,7 @@ class Listener::Impl {
       return body;
     };
     std::optional<HttpError>& refusal = exchange->message.refusal;
-    if (!exchange->message.body.empty() && std::chrono::steady_clock::now() > came + patience)
+    if (!exchange->message.body.empty() && std::chrono::steady_clock::now() > came + patience_with_bodies)
       refusal = too_many_bodies();
     Response response =
         refusal ? refuse(router_, exchange->request, *refusal) : dispatch(router_, exchange->request);

@@ -16,7 +16,7 @@
 namespace signorini::server {
 namespace {
 
-constexpr int look_around_ms = 250;  // how late somebody is sent away
+constexpr int look_at_guests_ms = 250;  // how late somebody is sent away
 
 constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
 
@@ -82,7 +82,7 @@ void Lobby::run() {
   auto look_around = Clock::now();
   for (;;) {
     std::array<epoll_event, 64> events;
-    const int count = epoll_wait(epoll_, events.data(), events.size(), look_around_ms);
+    const int count = epoll_wait(epoll_, events.data(), events.size(), look_at_guests_ms);
     // Who waits at the door of a busy lobby would find it locked again each time.
     while (at_door_ > 0) std::this_thread::yield();
     const std::lock_guard lock(mutex_);
@@ -98,7 +98,7 @@ void Lobby::run() {
     }
     if (Clock::now() < look_around) continue;
     dismiss_late();
-    look_around = Clock::now() + std::chrono::milliseconds(look_around_ms);
+    look_around = Clock::now() + std::chrono::milliseconds(look_at_guests_ms);
   }
 }
 

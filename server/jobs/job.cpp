@@ -41,7 +41,7 @@ std::size_t memory_of(const Solution& solution) {
 
 std::string iso8601(Time time) {
   using namespace std::chrono;
-  const auto since_epoch = floor<milliseconds>(time.time_since_epoch());
+  const auto since_epoch = std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch());
   const std::time_t seconds_part = static_cast<std::time_t>(floor<seconds>(since_epoch).count());
   std::tm utc{};
   gmtime_r(&seconds_part, &utc);

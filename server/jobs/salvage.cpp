@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "server/jobs/byte_order.hpp"
 #include "server/jobs/write_ahead_log.hpp"
 
 namespace signorini::server {
@@ -23,12 +24,6 @@ namespace {
 
 constexpr std::size_t page_bytes = WriteAheadLog::page_bytes;
 constexpr std::size_t head_bytes = 100;  // of the file, on its first page
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t offset, int count = 4) {
-  std::uint32_t number = 0;
-  for (int i = 0; i < count; ++i) number = number << 8 | static_cast<std::uint8_t>(bytes[offset + i]);
-  return number;
-}
 
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

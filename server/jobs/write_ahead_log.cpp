@@ -3,23 +3,13 @@
 #include <array>
 #include <fstream>
 
+#include "server/jobs/byte_order.hpp"
+
 namespace signorini::server {
 namespace {
 
 constexpr std::size_t log_head = 32, frame_head = 24, frame_bytes = frame_head + WriteAheadLog::page_bytes;
 constexpr std::size_t word = 4, salts = 8;
-
-std::uint32_t big_endian(std::string_view bytes, std::size_t offset) {
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < word; ++i) number = number << 8 | static_cast<std::uint8_t>(bytes[offset + i]);
-  return number;
-}
-
-std::uint32_t little_endian(std::string_view bytes, std::size_t offset) {
-  std::uint32_t number = 0;
-  for (std::size_t i = word; i-- > 0;) number = number << 8 | static_cast<std::uint8_t>(bytes[offset + i]);
-  return number;
-}
 
 using Checksum = std::array<std::uint32_t, 2>;
 
@@ -29,7 +19,9 @@ Checksum stored(std::string_view bytes, std::size_t offset) {
 }
 
 Checksum goes_on(Checksum sum, std::string_view bytes, bool words_are_big_endian) {
-  const auto read = words_are_big_endian ? big_endian : little_endian;
+  const auto read = [&](std::string_view from, std::size_t at) {
+    return words_are_big_endian ? big_endian(from, at) : little_endian(from, at);
+  };
   for (std::size_t at = 0; at < bytes.size(); at += 2 * word) {
     sum[0] += read(bytes, at) + sum[1];
     sum[1] += read(bytes, at + word) + sum[0];

@@ -18,7 +18,7 @@ constexpr double kTogether = 1e-3;
 /// A constant potential is no stress: where nothing else fixes it, this part of the diagonal does.
 constexpr double kRegular = 1e-10;
 /// Below this part of a row's coefficients what elimination leaves is rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kTermRounding = 1e-12;
 
 double value(const LinearForm& form, const Eigen::VectorXd& x) {
   double sum = 0;
@@ -43,7 +43,7 @@ class FreeUnknowns {
       for (const auto& [other, share] : known->second) largest = std::max(largest, std::abs(factor * share));
     }
     // What is left of terms that cancel would fill the combinations.
-    std::erase_if(rest, [&](const auto& term) { return std::abs(term.second) <= kRounding * largest; });
+    std::erase_if(rest, [&](const auto& term) { return std::abs(term.second) <= kTermRounding * largest; });
     const auto pivot =
         std::ranges::max_element(rest, {}, [](const auto& term) { return std::abs(term.second); });
     if (pivot == rest.end()) return;
@@ -80,7 +80,7 @@ class FreeUnknowns {
   static void add(double times, const Combination& some, Combination& sum) {
     for (const auto& [unknown, factor] : some) {
       const double before = sum[unknown], after = sum[unknown] += times * factor;
-      if (std::abs(after) <= kRounding * std::abs(before)) sum.erase(unknown);
+      if (std::abs(after) <= kTermRounding * std::abs(before)) sum.erase(unknown);
     }
   }
 

@@ -11,7 +11,7 @@ namespace signorini {
 namespace {
 
 /// Below this part of the forces a difference is rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kForceRounding = 1e-12;
 
 /// A chain adds up the rounding of all its edges.
 constexpr double kNoLack = 100;
@@ -76,7 +76,7 @@ ContactPressure::ContactPressure(const Discretization& problem, const Eigen::Mat
   // Fluxes are forces: what an open chain has is rounding beside them.
   const double largest_flux = stress.cwiseAbs().maxCoeff();
   for (const Chain& given : pressure_chains(problem, stress)) {
-    const double scale = kRounding * (sum_of_forces(given) + largest_flux);
+    const double scale = kForceRounding * (sum_of_forces(given) + largest_flux);
     const AdmissibleChain chain = admissible(problem, given, clearance, scale);
     keep(problem, given, chain.links());
     if (problem.spaces().components == 2) {

@@ -18,7 +18,7 @@ namespace {
 constexpr int kNodes = MacroElement::kNodes, kOuter = 6, kInner = kNodes - kOuter;
 
 using Matrix = TriangleForms::Matrix;
-using Local = TriangleForms::Vector;
+using FormVector = TriangleForms::Vector;
 
 /// The integrals over the reference triangle of products of the ten functions' derivatives and a weight, and
 /// of their products with P2.
@@ -111,7 +111,7 @@ Condensed condensed(const AffineMap& map, bool is_constant, LawField<2>& law) {
 }
 
 /// (Πf, φ) for the functions of the triangle, which go on into it as it costs least.
-Local work_of_load(const Discretization& problem, int t, const Condensed& own) {
+FormVector work_of_load(const Discretization& problem, int t, const Condensed& own) {
   const double determinant = AffineMap(problem.mesh.corners(t)).determinant;
   const Eigen::Matrix<double, 2, kNodes> work =
       determinant * balanced_load<2>(problem, t) * products_with_loads().transpose();
@@ -119,16 +119,16 @@ Local work_of_load(const Discretization& problem, int t, const Condensed& own) {
 }
 
 /// <Πt, φ> for the functions of the triangle.
-Local work_of_traction(const Discretization& problem, int t) {
+FormVector work_of_traction(const Discretization& problem, int t) {
   const Mesh& mesh = problem.mesh;
-  Local work = Local::Zero();
+  FormVector work = FormVector::Zero();
   for (int e = 0; e < 3; ++e) {
     const int edge = mesh.triangle_edges[t][e];
     if (!problem.traction.acts_on(edge)) continue;
     const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
     const std::array<int, 3> nodes{(e + (forward ? 1 : 2)) % 3, (e + (forward ? 2 : 1)) % 3, 3 + e};
     for (int c = 0; c < 2; ++c) {
-      const LocalVector own = edge_moments(2, [&](double s) { return problem.traction(edge, c, s); });
+      const FormVector own = edge_moments(2, [&](double s) { return problem.traction(edge, c, s); });
       for (int k = 0; k < 3; ++k) work[2 * nodes[k] + c] += mesh.length(edge) * own[k];
     }
   }
@@ -193,9 +193,9 @@ class Relaxation {
 
   void add(int t, const Condensed& own, int& number) {
     const std::array<int, 6> nodes = nodes_of(t);
-    Local v;
+    FormVector v;
     for (int k = 0; k < 6; ++k) v.segment<2>(2 * k) = value(nodes[k]);
-    Local slope = own.stiffness * v - work_of_load(problem_, t, own) - work_of_traction(problem_, t);
+    FormVector slope = own.stiffness * v - work_of_load(problem_, t, own) - work_of_traction(problem_, t);
     if (std::ranges::all_of(nodes, [&](int node) { return freedom_[node].normal.isZero(0); })) {
       if (number < 0) number = forms_.keep(own.stiffness);
       forms_.matrix_of.push_back(number);

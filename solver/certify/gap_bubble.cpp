@@ -9,7 +9,7 @@ namespace signorini {
 namespace {
 
 /// Below this part of the displacement a difference is rounding.
-constexpr double kSmall = 1e-12;
+constexpr double kBubbleRounding = 1e-12;
 
 /// More than this is taken rather than that another cell is looked at.
 constexpr double kNearEnough = 1.05;
@@ -23,9 +23,9 @@ constexpr int kFirstCells = 16;
 constexpr double kHigh = 4;
 
 /// A quadratic function of s by its values at 0, ½, 1.
-class Quadratic {
+class EdgeQuadratic {
  public:
-  explicit Quadratic(const std::array<double, 3>& values)
+  explicit EdgeQuadratic(const std::array<double, 3>& values)
       : begin_(values[0]),
         end_(values[2]),
         second_(2 * (begin_ + end_) - 4 * values[1]),
@@ -62,7 +62,7 @@ double bubble(double s) {
 }
 
 /// With r = g − v_n: next to an end r ≥ r₀ + s min r', and everywhere by its values.
-Cell cell(const BelowGap& of, const Quadratic& v, double from, double to) {
+Cell cell(const BelowGap& of, const EdgeQuadratic& v, double from, double to) {
   constexpr double none = std::numeric_limits<double>::infinity();
   const Interval s(from, to);
   const Series g = series_on(of.gap, of.line, s, 1);
@@ -89,7 +89,7 @@ Cell cell(const BelowGap& of, const Quadratic& v, double from, double to) {
 }
 
 /// By cells, of which the one that asks for most is cut in two while that can change much.
-double bubble_by_cells(const BelowGap& of, const Quadratic& v, double rounding, CellBudget& budget) {
+double bubble_by_cells(const BelowGap& of, const EdgeQuadratic& v, double rounding, CellBudget& budget) {
   std::priority_queue<Cell> open;
   for (int i = 0; i < kFirstCells; ++i) open.push(cell(of, v, 1. * i / kFirstCells, (i + 1.) / kFirstCells));
   double at_least = 0;
@@ -107,7 +107,7 @@ double bubble_by_cells(const BelowGap& of, const Quadratic& v, double rounding, 
 }
 
 /// What v_n is above g at most.
-double excess(const BelowGap& of, const Quadratic& v) {
+double excess(const BelowGap& of, const EdgeQuadratic& v) {
   double most = 0;
   for (int i = 0; i < kFirstCells; ++i) {
     const Interval s(1. * i / kFirstCells, (i + 1.) / kFirstCells);
@@ -121,8 +121,8 @@ double excess(const BelowGap& of, const Quadratic& v) {
 /// With r = g − v_n, r₀ ≥ 0 and r₁ ≥ 0 at the ends: if g is smooth, r = r₀ (1 − s) + r₁ s + s (1 − s) k with
 /// k = −r[0, s, 1] ∈ −½ r'', and r + 4 b s (1 − s) ≥ 0 if −(k + 4 b) ≤ (√r₀ + √r₁)².
 double BelowGap::bubble(CellBudget& budget) const {
-  const Quadratic v(normal_displacement);
-  const double rounding = kSmall * v.size();
+  const EdgeQuadratic v(normal_displacement);
+  const double rounding = kBubbleRounding * v.size();
   const double roots = std::pow(std::sqrt(std::max(0., room[0])) + std::sqrt(std::max(0., room[1])), 2);
   const Interval curvature = series_on(gap, line, Interval(0, 1), 2)[2];
   const double of_whole = (curvature.upper() - v.second() - roots) / 4;
@@ -133,7 +133,7 @@ double BelowGap::bubble(CellBudget& budget) const {
 double BelowGap::level(CellBudget& budget) const {
   const double high = bubble(budget);
   if (high == 0) return 0;
-  const double most = excess(*this, Quadratic(normal_displacement));
+  const double most = excess(*this, EdgeQuadratic(normal_displacement));
   if (!std::isfinite(most) || high <= kHigh * most) return 0;
   const auto lowered = [&](double by) {
     const auto& [a, b, c] = normal_displacement;

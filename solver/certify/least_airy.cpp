@@ -16,7 +16,7 @@ namespace {
 
 using Airy = ContactPressure::Airy;
 
-constexpr int kLayers = 6;
+constexpr int kAiryLayers = 6;
 /// Points with less than this part of the largest |∇ψ| + |ψ| / h are left to their surroundings.
 constexpr double kHardly = 1e-6;
 
@@ -123,7 +123,7 @@ class Minimization {
     for (const auto& [point, slope] : slopes) largest = std::max(largest, slope);
     for (const auto& [point, slope] : slopes)
       if (slope > kHardly * largest) points.push_back(point);
-    const std::vector<int> layers = layers_around(mesh_, points, kLayers);
+    const std::vector<int> layers = layers_around(mesh_, points, kAiryLayers);
     std::vector<bool> held(mesh_.points.size(), false);
     for (const BoundaryPart& part : mesh_.boundary) {
       if (condition_on<Fixed>(problem_.problem, part.name) ||
@@ -142,7 +142,7 @@ class Minimization {
       }
     int unknowns = 0;
     for (std::size_t point = 0; point < places_.size(); ++point) {
-      if (layers[point] >= kLayers || held[point]) continue;
+      if (layers[point] >= kAiryLayers || held[point]) continue;
       const Vector d = directions[point].value_or(Vector(0, 0));
       if (d.isZero(0)) {
         places_[point].values = Eigen::Matrix3d::Identity();

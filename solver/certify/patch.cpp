@@ -9,7 +9,7 @@
 namespace signorini {
 namespace {
 
-constexpr int kLayers = 2;
+constexpr int kPatchLayers = 2;
 constexpr int kCuts = 3;
 /// Edges on which less than this part of the largest force is moved are left to their surroundings.
 constexpr double kHardly = 0.1;
@@ -75,7 +75,7 @@ std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
   const std::vector<int> core = triangles_at(whole, points);
   if (core.empty()) return {};
   std::vector<int> layers = core;
-  for (int layer = 1; layer < kLayers; ++layer) {
+  for (int layer = 1; layer < kPatchLayers; ++layer) {
     for (const int t : layers)
       for (const int point : whole.triangles[t]) points[point] = true;
     layers = triangles_at(whole, points);

@@ -7,7 +7,7 @@
 namespace signorini {
 namespace {
 
-constexpr int kLayers = 5;
+constexpr int kPotentialLayers = 5;
 
 /// Below this part of the largest potential a value is that of a chain that changes elsewhere.
 constexpr double kNothing = 1e-9;
@@ -28,7 +28,8 @@ PotentialNodes::PotentialNodes(const Discretization& problem)
     : PotentialNodes(problem, std::vector<int>(problem.mesh.points.size(), 0)) {}
 
 PotentialNodes::PotentialNodes(const Discretization& problem, const ContactPressure& pressure)
-    : PotentialNodes(problem, layers_around(problem.mesh, points_with_potential(pressure), kLayers)) {}
+    : PotentialNodes(problem,
+                     layers_around(problem.mesh, points_with_potential(pressure), kPotentialLayers)) {}
 
 PotentialNodes::PotentialNodes(const Discretization& problem, const std::vector<int>& layers)
     : mesh_(problem.mesh), numbers_(mesh_.points.size() + mesh_.edges.size(), -1) {
@@ -49,7 +50,7 @@ std::array<int, 6> PotentialNodes::on(int t) const {
 
 /// Marks the nodes with 0.
 void PotentialNodes::take(int t, const std::vector<int>& layers) {
-  const auto is_inside = [&](int point) { return layers[point] < kLayers; };
+  const auto is_inside = [&](int point) { return layers[point] < kPotentialLayers; };
   if (std::ranges::none_of(mesh_.triangles[t], is_inside)) return;
   triangles_.push_back(t);
   for (const int point : mesh_.triangles[t])

@@ -9,9 +9,9 @@ namespace signorini {
 namespace {
 
 /// Below this part of what there is, what lacks is rounding.
-constexpr double kRounding = 1e-14;
+constexpr double kBalanceRounding = 1e-14;
 
-constexpr int kData = QuadraticBalance::kData, kFluxes = QuadraticBalance::kFluxes;
+constexpr int kBalanceData = QuadraticBalance::kData, kFluxes = QuadraticBalance::kFluxes;
 using Values = QuadraticBalance::Values;
 
 /// RT2 = P2² + x P̃2: two times the basis of P2, and x times x², xy, y².
@@ -23,8 +23,8 @@ Values functions(const Point& x) {
   return values;
 }
 
-Eigen::Matrix<double, 1, kData> divergences(const Point& x) {
-  Eigen::Matrix<double, 1, kData> values;
+Eigen::Matrix<double, 1, kBalanceData> divergences(const Point& x) {
+  Eigen::Matrix<double, 1, kBalanceData> values;
   values << quadratic_gradients(x).reshaped().transpose(), 4 * x.x() * x.x(), 4 * x.x() * x.y(),
       4 * x.y() * x.y();
   return values;
@@ -37,10 +37,10 @@ Vector curl_of_bubble(const Point& x) {
 }
 
 /// Column j: the coefficients of the function with datum j.
-Eigen::Matrix<double, kData, kData> functions_of_data() {
+Eigen::Matrix<double, kBalanceData, kBalanceData> functions_of_data() {
   const std::array<Point, 6> nodes{Point(0, 0),     Point(1, 0),   Point(0, 1),
                                    Point(0.5, 0.5), Point(0, 0.5), Point(0.5, 0)};
-  Eigen::Matrix<double, kData + 1, kData> data = decltype(data)::Zero();
+  Eigen::Matrix<double, kBalanceData + 1, kBalanceData> data = decltype(data)::Zero();
   for (int e = 0; e < 3; ++e) {
     const int a = (e + 1) % 3, b = (e + 2) % 3;
     const Vector way = nodes[b] - nodes[a], normal(way.y(), -way.x());
@@ -52,7 +52,7 @@ Eigen::Matrix<double, kData, kData> functions_of_data() {
     const Point& x = triangle_rule().points[q];
     data.bottomRows<1>() += triangle_rule().weights[q] * curl_of_bubble(x).transpose() * functions(x);
   }
-  return data.colPivHouseholderQr().solve(Eigen::Matrix<double, kData + 1, kData>::Identity());
+  return data.colPivHouseholderQr().solve(Eigen::Matrix<double, kBalanceData + 1, kBalanceData>::Identity());
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ Eigen::Vector3d QuadraticBalance::lacking_on(int edge) const {
   const auto own = [&](double s) { return problem_.traction(edge, 0, s); };
   const Eigen::Vector3d all = projection_at_nodes(2, own),
                         lacking = all - projection_at_nodes(problem_.spaces().order, own);
-  return lacking.norm() <= kRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
+  return lacking.norm() <= kBalanceRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
 }
 
 std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t) const {
@@ -81,7 +81,7 @@ std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t) const 
     lacking.array() -= balanced.rightCols<3>().mean();
   else
     lacking -= at_nodes<1>(discrete_load<1>(problem_, t));
-  if (lacking.norm() <= kRounding * balanced.norm()) lacking.setZero();
+  if (lacking.norm() <= kBalanceRounding * balanced.norm()) lacking.setZero();
   Data data = Data::Zero();
   data.tail<6>() = -twice_area * lacking.transpose();
   for (int e = 0; e < 3; ++e) {
@@ -96,7 +96,7 @@ std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t) const 
 }
 
 QuadraticBalance::Values QuadraticBalance::reference_values(const Point& reference) {
-  static const Eigen::Matrix<double, kData, kData> of_data = functions_of_data();
+  static const Eigen::Matrix<double, kBalanceData, kBalanceData> of_data = functions_of_data();
   return functions(reference).lazyProduct(of_data);
 }
 

@@ -8,7 +8,7 @@ namespace signorini {
 namespace {
 
 using Matrix = TriangleForms::Matrix;
-using Local = TriangleForms::Vector;
+using FormVector = TriangleForms::Vector;
 
 /// The unknowns of a triangle's functions, and their signs.
 struct Place {
@@ -83,9 +83,9 @@ class Stars {
   void add(int t) {
     const Place place = place_of(t);
     const Matrix& matrix = forms_.matrices[forms_.matrix_of[t]];
-    Local x;
+    FormVector x;
     for (int i = 0; i < x.size(); ++i) x[i] = sign(place, i) * x_[place.unknowns[i]];
-    const Local slope = forms_.slopes[t] + matrix * x;
+    const FormVector slope = forms_.slopes[t] + matrix * x;
     for (int i = 0; i < x.size(); ++i) {
       const int row = column_[place.unknowns[i]];
       if (row < 0) continue;

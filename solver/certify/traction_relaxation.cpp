@@ -11,11 +11,11 @@ namespace signorini {
 namespace {
 
 constexpr int kLinear = 12;  ///< tractions at both ends of three edges, x and y in turns
-constexpr int kFree = MacroElement::kFree, kData = MacroElement::kData, kRows = kLinear + kFree;
+constexpr int kFree = MacroElement::kFree, kMacroData = MacroElement::kData, kRows = kLinear + kFree;
 
 /// The data of the macro-element that has linear tractions, by those at the ends of its edges.
-Eigen::Matrix<double, kData, kLinear> data_of_linear() {
-  Eigen::Matrix<double, kData, kLinear> data = decltype(data)::Zero();
+Eigen::Matrix<double, kMacroData, kLinear> data_of_linear() {
+  Eigen::Matrix<double, kMacroData, kLinear> data = decltype(data)::Zero();
   for (int e = 0; e < 3; ++e)
     for (int end = 0; end < 2; ++end) {
       data.block<2, 2>(6 * e + 2 * end, 4 * e + 2 * end).setIdentity();
@@ -29,26 +29,26 @@ Eigen::Matrix<double, kData, kLinear> data_of_linear() {
 /// whose rows are in reference coordinates too.
 class ReferenceProducts {
  public:
-  using Products = Eigen::Matrix<double, kRows, Eigen::Dynamic, 0, kRows, kFree + kData + kMaxLocal>;
+  using Products = Eigen::Matrix<double, kRows, Eigen::Dynamic, 0, kRows, kFree + kMacroData + kMaxLocal>;
 
   explicit ReferenceProducts(const Spaces& spaces) {
     const MacroElement& element = macro_element();
     const MacroRule& rule = macro_rule(spaces, 6);
     Eigen::Matrix<double, MacroElement::kStresses, kRows> rows;
     rows << element.from_data * data_of_linear(), element.free;
-    Eigen::Matrix<double, MacroElement::kStresses, kFree + kData> columns;
+    Eigen::Matrix<double, MacroElement::kStresses, kFree + kMacroData> columns;
     columns << element.free, element.from_data;
     const auto functions = rule.values.front().stress.cols();
-    for (Products& entry : of_entries_) entry.setZero(kRows, kFree + kData + 2 * functions);
+    for (Products& entry : of_entries_) entry.setZero(kRows, kFree + kMacroData + 2 * functions);
     for (int q = 0; q < rule.size(); ++q) {
       const MacroElement::Place& place = rule.places[q];
       Eigen::Matrix<double, 3, kRows> left;
       for (int i = 0; i < kRows; ++i) left.col(i) = MacroElement::stress(place, rows.col(i));
-      Eigen::Matrix<double, 3, Eigen::Dynamic> right(3, kFree + kData + 2 * functions);
-      for (int i = 0; i < kFree + kData; ++i) right.col(i) = MacroElement::stress(place, columns.col(i));
+      Eigen::Matrix<double, 3, Eigen::Dynamic> right(3, kFree + kMacroData + 2 * functions);
+      for (int i = 0; i < kFree + kMacroData; ++i) right.col(i) = MacroElement::stress(place, columns.col(i));
       for (Eigen::Index a = 0; a < functions; ++a) {
         const Vector tau = rule.values[q].stress.col(a);
-        right.middleCols<2>(kFree + kData + 2 * a) << tau.x(), 0, 0, tau.y(), tau.y() / 2, tau.x() / 2;
+        right.middleCols<2>(kFree + kMacroData + 2 * a) << tau.x(), 0, 0, tau.y(), tau.y() / 2, tau.x() / 2;
       }
       int entry = 0;
       for (int a = 0; a < 3; ++a)
@@ -113,7 +113,8 @@ Eigen::Matrix3d mean_compliance(const AffineMap& map, bool is_constant, LawField
 struct Shape {
   TriangleForms::Matrix matrix;
   /// The slope, by the data of σ* and the coefficients of σ_h in reference coordinates.
-  Eigen::Matrix<double, TriangleForms::kLocal, Eigen::Dynamic, 0, TriangleForms::kLocal, kData + kMaxLocal>
+  Eigen::Matrix<double, TriangleForms::kLocal, Eigen::Dynamic, 0, TriangleForms::kLocal,
+                kMacroData + kMaxLocal>
       slope;
   Eigen::Matrix2d to_reference;
   int number = -1;
@@ -135,7 +136,7 @@ Shape shape_of(const Discretization& problem, int t, LawField<2>& law) {
   const auto all =
       (airy.transpose() * (given.topRows<kLinear>() - follows.transpose() * given.bottomRows<kFree>()))
           .eval();
-  return {all.leftCols<kData>() * data_of_linear() * airy, all, map.jacobian.inverse()};
+  return {all.leftCols<kMacroData>() * data_of_linear() * airy, all, map.jacobian.inverse()};
 }
 
 TriangleForms forms_of(const Discretization& problem, const Eigen::MatrixXd& stress,
@@ -145,7 +146,7 @@ TriangleForms forms_of(const Discretization& problem, const Eigen::MatrixXd& str
   forms.slopes.reserve(problem.triangles());
   LawField<2> law(problem.problem.material);
   PerShape<Shape> shapes(problem);
-  Eigen::VectorXd given(kData + stress.rows());
+  Eigen::VectorXd given(kMacroData + stress.rows());
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);
     Shape& shape = shapes(t, [&] { return shape_of(problem, t, law); });

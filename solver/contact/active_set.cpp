@@ -12,7 +12,7 @@ namespace {
 /// Steps without fewer violations before exchanges become single.
 constexpr int kPatience = 5;
 /// Violations below this multiple of the largest term are rounding.
-constexpr double kRounding = 1e-13;
+constexpr double kStateRounding = 1e-13;
 
 using Closed = std::vector<bool>;
 
@@ -38,7 +38,8 @@ std::optional<Eigen::VectorXd> solve_for_open(const ContactComplement& contact, 
   const DenseCholesky factor(contact.s, open, progress);
   double largest = 0;
   for (const int i : open) largest = std::max(largest, contact.s(i, i));
-  if (!factor.is_positive_definite() || factor.smallest_pivot() < 10 * kRounding * largest) return std::nullopt;
+  if (!factor.is_positive_definite() || factor.smallest_pivot() < 10 * kStateRounding * largest)
+    return std::nullopt;
   const Eigen::VectorXd found = factor.solve(contact.c(open), progress);
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact.size());
   for (std::size_t k = 0; k < open.size(); ++k) clearance[open[k]] = found[static_cast<Eigen::Index>(k)];
@@ -89,7 +90,8 @@ std::vector<int> violations(const ContactComplement& contact, const Eigen::Vecto
       contact.s.diagonal().maxCoeff() * largest_clearance + contact.c.lpNorm<Eigen::Infinity>();
   std::vector<int> found;
   for (int i = 0; i < static_cast<int>(closed.size()); ++i)
-    if (closed[i] ? force[i] < -kRounding * largest_force : clearance[i] < -kRounding * largest_clearance)
+    if (closed[i] ? force[i] < -kStateRounding * largest_force
+                  : clearance[i] < -kStateRounding * largest_clearance)
       found.push_back(i);
   return found;
 }

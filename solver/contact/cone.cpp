@@ -5,7 +5,7 @@
 namespace signorini {
 namespace {
 
-constexpr double kRounding = 1e-10;
+constexpr double kConeRounding = 1e-10;
 
 }  // namespace
 
@@ -22,9 +22,9 @@ Eigen::VectorXd beyond_cone(const std::vector<Eigen::VectorXd>& generators, cons
     return fitted;
   };
   for (std::size_t step = 0; step <= 3 * generators.size() + 10; ++step) {
-    if (residual.norm() <= kRounding * target.norm()) return Eigen::VectorXd::Zero(target.size());
+    if (residual.norm() <= kConeRounding * target.norm()) return Eigen::VectorXd::Zero(target.size());
     int best = -1;
-    double steepest = kRounding * target.norm();
+    double steepest = kConeRounding * target.norm();
     for (int i = 0; i < static_cast<int>(generators.size()); ++i) {
       const double size = generators[i].norm();
       const double slope = size > 0 ? generators[i].dot(residual) / size : 0;

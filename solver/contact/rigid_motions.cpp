@@ -233,15 +233,15 @@ void refuse_unseen(const Discretization& problem, const RigidBody& body, const M
 }
 
 /// What contact and loads say of the free motions of a body, in the coordinates of these.
-struct Balance {
+struct MotionBalance {
   std::vector<Eigen::VectorXd> normals;  ///< r_n at the ends of the edges of Γ_C
   std::vector<double> gaps;              ///< there
   Eigen::VectorXd load;                  ///< (f, r) + <t, r>; 0 if it is rounding
   bool is_loaded;
 };
 
-Balance balance_of(const RigidBody& body, const Motions& free) {
-  Balance balance;
+MotionBalance balance_of(const RigidBody& body, const Motions& free) {
+  MotionBalance balance;
   body.at_contact([&](const Vector& direction, const Point& x, double gap) {
     balance.normals.push_back((body.frame().along(direction, x) * free).transpose());
     balance.gaps.push_back(gap);
@@ -261,7 +261,7 @@ Balance balance_of(const RigidBody& body, const Motions& free) {
 /// r ≠ 0 with r_n ≤ 0, nothing sliding, and only if L(r) ≤ 0. The polar of these r is the cone of the
 /// normals, so that L must lie in its interior: it stays in the cone when it is changed a little in any
 /// direction. Where the normals span all motions there is no such r, and the body needs no load to be held.
-Eigen::VectorXd unhindered_motion(const Balance& balance) {
+Eigen::VectorXd unhindered_motion(const MotionBalance& balance) {
   const Eigen::VectorXd& load = balance.load;
   if (Eigen::VectorXd lifted = beyond_cone(balance.normals, load); !lifted.isZero(0)) return lifted;
   const double little = load.isZero(0) ? 1 : 1e-6 * load.norm();
@@ -274,7 +274,7 @@ Eigen::VectorXd unhindered_motion(const Balance& balance) {
   return Eigen::VectorXd::Zero(load.size());
 }
 
-void refuse_lifting(const RigidBody& body, const Motions& free, const Balance& balance) {
+void refuse_lifting(const RigidBody& body, const Motions& free, const MotionBalance& balance) {
   const Eigen::VectorXd motion = unhindered_motion(balance);
   if (motion.isZero(0)) return;
   const bool works = balance.load.dot(motion) > 1e-6 * balance.load.norm() * motion.norm();
@@ -286,7 +286,7 @@ void refuse_lifting(const RigidBody& body, const Motions& free, const Balance& b
 
 /// Without a load the body moves as far as its contacts let it. It can if a motion has r_n < g everywhere; if
 /// not, by Farkas' lemma, there are pressures in balance with Σ p g ≤ 0 and Σ p = 1.
-void refuse_floating(const RigidBody& body, const Balance& balance) {
+void refuse_floating(const RigidBody& body, const MotionBalance& balance) {
   if (balance.is_loaded) return;
   const Eigen::Index d = balance.load.size();
   double largest = 0;
@@ -310,7 +310,7 @@ bool held_by_contact_alone(const Discretization& problem, const RigidBody& body)
   if (free.cols() == 0) return false;
   refuse_sliding(body, free);
   refuse_unseen(problem, body, free);
-  const Balance balance = balance_of(body, free);
+  const MotionBalance balance = balance_of(body, free);
   refuse_lifting(body, free, balance);
   refuse_floating(body, balance);
   return true;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kTolerance = 1e-9, kToleranceOfRough = 1e-8;
 
 /// Of values, relative to the largest traction: less counts as none.
-constexpr double kRounding = 100 * kEnclosureRounding;
+constexpr double kTractionRounding = 100 * kEnclosureRounding;
 
 /// Of all edges together.
 constexpr int kCells = 20'000;
@@ -92,7 +92,7 @@ class Projection {
       const double own = rounding_of(*field_.formula(), x.x(), x.y(), n.x(), n.y());
       if (std::isfinite(own)) most = std::max(most, own);
     }
-    if (most <= kRounding * largest_) return;
+    if (most <= kTractionRounding * largest_) return;
     force += most;
     work += most;
     value_square_ += most * most;

@@ -115,10 +115,6 @@ std::vector<Fault> repeated_points(const Rings& given, const Rings& unit) {
   return faults;
 }
 
-Segment edge_of(const Rings& rings, int edge) {
-  return {rings.points[edge], rings.points[rings.next(edge)]};
-}
-
 std::vector<Fault> crossing_edges(const Rings& given, const Rings& unit) {
   FaultList crossings("/domain", "more edges that cross or touch");
   constexpr std::size_t most = 10;
@@ -158,7 +154,7 @@ std::vector<Fault> sharp_angles(const Rings& given, const Rings& unit) {
 
 std::vector<Segment> edges_of_ring(const Rings& rings, int ring) {
   std::vector<Segment> edges;
-  for (int e = rings.begin[ring]; e < rings.begin[ring + 1]; ++e) edges.push_back(edge_of(rings, e));
+  for (int e = rings.begin[ring]; e < rings.begin[ring + 1]; ++e) edges.push_back(rings.edge(e));
   return edges;
 }
 
@@ -199,11 +195,11 @@ constexpr double most_in_narrow_places = 300'000;
 /// Every check looks at all pairs of edges that may lie close to each other: so many take some tens of
 /// milliseconds.
 std::vector<Fault> intricate_faults(const Rings& given, const Rings& unit) {
-  constexpr std::size_t most_pairs = 200'000;
-  const std::optional<std::array<int, 2>> last = pair_of_near_edges(unit, most_pairs);
+  constexpr std::size_t most_near_pairs = 200'000;
+  const std::optional<std::array<int, 2>> last = pair_of_near_edges(unit, most_near_pairs);
   if (!last) return {};
   return {{unit.pointer_to(last->front()),
-           "more than " + std::to_string(most_pairs) +
+           "more than " + std::to_string(most_near_pairs) +
                " pairs of edges lie closer to each other than they are long, such as " +
                given.in_words(last->front()) + " and " + given.in_words(last->back()) +
                ": leave out what the solution does not depend on, or send a mesh instead"}};

@@ -10,13 +10,9 @@
 namespace signorini {
 namespace {
 
-Segment edge_of(const Rings& rings, int edge) {
-  return {rings.points[edge], rings.points[rings.next(edge)]};
-}
-
 /// Whether two edges have more in common than an end.
 bool collide(const Rings& unit, int i, int j) {
-  const Segment a = edge_of(unit, i), b = edge_of(unit, j);
+  const Segment a = unit.edge(i), b = unit.edge(j);
   const auto near = [](const Point& x, const Segment& edge) { return distance(x, edge) <= touching; };
   if (unit.next(i) == j) return near(a[0], b) || near(b[1], a);
   if (unit.next(j) == i) return near(b[0], a) || near(a[1], b);
@@ -121,7 +117,7 @@ double domain_area(const Rings& rings) {
 std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
   std::vector<Box> boxes;
   for (int e = 0; e < static_cast<int>(unit.points.size()); ++e)
-    boxes.push_back(box_around(edge_of(unit, e), touching));
+    boxes.push_back(box_around(unit.edge(e), touching));
   std::vector<std::array<int, 2>> pairs;
   for_each_meeting_pair(boxes, [&](int i, int j) {
     if (collide(unit, i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "mesh/polygon.hpp"
+#include "mesh/segments.hpp"
 #include "mesh/unit_frame.hpp"
 
 namespace signorini {
@@ -24,6 +25,7 @@ struct Rings {
 
   int size() const { return static_cast<int>(begin.size()) - 1; }
   int next(int point) const { return point + 1 < begin[ring[point] + 1] ? point + 1 : begin[ring[point]]; }
+  Segment edge(int from) const { return {points[from], points[next(from)]}; }
 
   /// The JSON pointer of a ring, and of the vertex at which the side of an edge begins.
   std::string pointer_to_ring(int number) const;

@@ -6,7 +6,7 @@
 #include "faults_of.hpp"
 #include "mesh/domain_mesh.hpp"
 
-namespace signorini::api {
+namespace signorini::api::arcs_json_test {
 namespace {
 
 using nlohmann::json;
@@ -76,4 +76,4 @@ TEST(ArcsJson, HaveOperatorsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::arcs_json_test

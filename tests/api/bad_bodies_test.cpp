@@ -9,7 +9,7 @@
 #include "api/problem_json.hpp"
 #include "faults_of.hpp"
 
-namespace signorini::api {
+namespace signorini::api::bad_bodies_test {
 namespace {
 
 using testing::UnorderedElementsAreArray;
@@ -55,4 +55,4 @@ TEST(BadBodies, EveryFaultSaysSomethingThatIsUtf8) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::bad_bodies_test

@@ -16,7 +16,7 @@
 #include "../problems/seconds_at_work.hpp"
 #include "solve.hpp"
 
-namespace signorini::api {
+namespace signorini::api::budget_test {
 namespace {
 
 using nlohmann::json;
@@ -226,4 +226,4 @@ TEST(Budget, TheMeasuredSizesAreNearTheMade) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::budget_test

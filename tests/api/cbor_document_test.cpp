@@ -8,7 +8,7 @@
 #include "api/json_document.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::cbor_document_test {
 namespace {
 
 using nlohmann::json;
@@ -147,4 +147,4 @@ TEST(ReadCbor, IsNoLongerThanItMayBe) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::cbor_document_test

@@ -8,7 +8,7 @@
 
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::cbor_writer_test {
 namespace {
 
 std::string hex_of(const WriteDocument& write) {
@@ -94,4 +94,4 @@ TEST(CborWriter, RefusesWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::cbor_writer_test

@@ -7,7 +7,7 @@
 
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::csv_test {
 namespace {
 
 std::string contact_csv(const std::vector<ContactPart>& parts) {
@@ -95,4 +95,4 @@ TEST(HistoryCsv, ComesInPiecesAndStopsWhenNobodyReads) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::csv_test

@@ -9,7 +9,7 @@
 #include "api/problem_json.hpp"
 #include "solve.hpp"
 
-namespace signorini::api {
+namespace signorini::api::elasticity_json_test {
 namespace {
 
 using nlohmann::json;
@@ -102,4 +102,4 @@ TEST(Domains, CornersAreSplitWhereThePairNeedsIt) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::elasticity_json_test

@@ -7,7 +7,7 @@
 #include "api/problem_json.hpp"
 #include "solve.hpp"
 
-namespace signorini::api {
+namespace signorini::api::example_values_test {
 namespace {
 
 /// A value from elsewhere, and how far the example's own mesh may be from it, relative.
@@ -67,4 +67,4 @@ TEST(ExampleValues, AreThoseOfIndependentPrograms) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::example_values_test

@@ -10,7 +10,7 @@
 
 #include "api/problem_json.hpp"
 
-namespace signorini::api {
+namespace signorini::api::examples_test {
 namespace {
 
 std::vector<std::string> names() {
@@ -68,4 +68,4 @@ TEST(Examples, TheSignoriniEdgeHasTheDataOfItsSolution) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::examples_test

@@ -11,7 +11,7 @@
 
 #include "faults_of.hpp"
 
-namespace signorini::api {
+namespace signorini::api::expression_test {
 namespace {
 
 using testing::HasSubstr;
@@ -214,4 +214,4 @@ TEST(Expression, IsReadAsMuParserReadsIt) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::expression_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::api {
+namespace signorini::api::gmsh_test {
 namespace {
 
 /// Two triangles on the unit square, as Gmsh writes them; node 9 is the centre of nothing.
@@ -264,4 +264,4 @@ TEST(Gmsh, RefusesEveryTextThatIsCutShort) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::gmsh_test

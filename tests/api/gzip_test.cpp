@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::api {
+namespace signorini::api::gzip_test {
 namespace {
 
 /// Letters that hold about six bits each.
@@ -41,4 +41,4 @@ TEST(Gzip, StopsWhenNobodyReads) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::gzip_test

@@ -10,7 +10,7 @@
 #include "../problems/sanitized.hpp"
 #include "solve.hpp"
 
-namespace signorini::api {
+namespace signorini::api::hertz_test {
 namespace {
 
 Request half_disc() {
@@ -99,4 +99,4 @@ TEST(Hertz, ThePressureTendsToHertzAsTheOverlapFalls) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::hertz_test

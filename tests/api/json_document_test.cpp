@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace signorini::api {
+namespace signorini::api::json_document_test {
 namespace {
 
 using testing::HasSubstr;
@@ -108,4 +108,4 @@ TEST(ParseJson, DoesNotRepeatALongTextThatItRefuses) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::json_document_test

@@ -11,7 +11,7 @@
 
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::json_writer_test {
 namespace {
 
 double back_and_forth(double number) {
@@ -138,4 +138,4 @@ TEST(JsonWriter, StopsWhenNobodyReads) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::json_writer_test

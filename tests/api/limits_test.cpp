@@ -5,7 +5,7 @@
 
 #include "api/openapi.hpp"
 
-namespace signorini::api {
+namespace signorini::api::limits_test {
 namespace {
 
 using nlohmann::json;
@@ -61,4 +61,4 @@ TEST(Limits, OfSumsAreDescribed) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::limits_test

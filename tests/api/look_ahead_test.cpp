@@ -6,7 +6,7 @@
 #include "../problems/json_problems.hpp"
 #include "solve.hpp"
 
-namespace signorini::api {
+namespace signorini::api::look_ahead_test {
 namespace {
 
 using nlohmann::json;
@@ -101,4 +101,4 @@ TEST(LookAhead, SaysWhatItLeavesToTheSolve) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::look_ahead_test

@@ -3,7 +3,7 @@
 
 #include "api/problem_json.hpp"
 
-namespace signorini::api {
+namespace signorini::api::operator_key_test {
 namespace {
 
 using nlohmann::json;
@@ -57,4 +57,4 @@ TEST(OperatorKey, TellsOperatorsApart) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::operator_key_test

@@ -12,7 +12,7 @@
 #include "api/picture/colour_map.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::picture_test {
 namespace {
 
 /// A rectangle of two triangles, 2 by 1.
@@ -189,4 +189,4 @@ TEST(Picture, OfTheHistoryHasACurveForEachResidualThatIsNotZero) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::picture_test

@@ -7,7 +7,7 @@
 #include "api/examples.hpp"
 #include "faults_of.hpp"
 
-namespace signorini::api {
+namespace signorini::api::problem_json_test {
 namespace {
 
 using nlohmann::json;
@@ -168,4 +168,4 @@ TEST(ParseRequest, CutsAQuotationBetweenCharacters) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::problem_json_test

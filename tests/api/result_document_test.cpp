@@ -12,7 +12,7 @@
 #include "faults_of.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::result_document_test {
 namespace {
 
 using nlohmann::json;
@@ -252,4 +252,4 @@ TEST(Road, LeadsFromEveryExampleToAResult) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::result_document_test

@@ -9,7 +9,7 @@
 #include "faults_of.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::study_json_test {
 namespace {
 
 using nlohmann::json;
@@ -214,4 +214,4 @@ TEST(StudyTable, StandsInColumnsThatFitALine) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::study_json_test

@@ -7,7 +7,7 @@
 #include "faults_of.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::sweep_json_test {
 namespace {
 
 using nlohmann::json;
@@ -120,4 +120,4 @@ TEST(WriteSweep, HasAnEntryAVariation) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::sweep_json_test

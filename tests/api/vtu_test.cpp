@@ -9,7 +9,7 @@
 #include "read_vtu.hpp"
 #include "written_by.hpp"
 
-namespace signorini::api {
+namespace signorini::api::vtu_test {
 namespace {
 
 using testing::ElementsAre;
@@ -153,4 +153,4 @@ TEST(WriteVtu, ComesInPiecesAndStopsWhenNobodyReads) {
 }
 
 }  // namespace
-}  // namespace signorini::api
+}  // namespace signorini::api::vtu_test

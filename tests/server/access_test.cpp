@@ -9,7 +9,7 @@
 #include "server/jobs/memory_budget.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::access_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -315,4 +315,4 @@ TEST_F(Memory, ThatNoSolveMayTakeIs413) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::access_test

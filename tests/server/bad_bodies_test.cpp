@@ -4,7 +4,7 @@
 #include <iterator>
 #include <set>
 
-namespace signorini::server {
+namespace signorini::server::bad_bodies_test {
 namespace {
 
 using nlohmann::json;
@@ -36,4 +36,4 @@ TEST_F(BadBodies, GiveTheirStatusAndPointersAndHarmNobody) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::bad_bodies_test

@@ -10,7 +10,7 @@
 #include "long_tests.hpp"
 #include "server/jobs/retention_clock.hpp"
 
-namespace signorini::server {
+namespace signorini::server::clock_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -79,4 +79,4 @@ TEST(ClockThatJumps, DeletesNothing) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::clock_test

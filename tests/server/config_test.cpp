@@ -8,7 +8,7 @@
 
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::config_test {
 namespace {
 
 CommandLine read(std::vector<const char*> arguments) {
@@ -158,4 +158,4 @@ TEST(Config, ReadsTheSolveCommand) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::config_test

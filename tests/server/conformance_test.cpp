@@ -18,7 +18,7 @@
 #include "reply_reader.hpp"
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::conformance_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -95,4 +95,4 @@ TEST(ConformanceCases, AreTwoHundredAtLeast) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::conformance_test

@@ -17,7 +17,7 @@
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::crash_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -263,4 +263,4 @@ TEST(Crash, BootsSoonWithManyJobs) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::crash_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::server {
+namespace signorini::server::crew_test {
 namespace {
 
 TEST(Crew, DoesEverythingBeforeItEnds) {
@@ -56,12 +56,16 @@ TEST(Crew, LetsOthersWorkMeanwhile) {
 
 /// And what they hold is given back while others wait, whoever's turn is next.
 TEST(Crew, DoesNothingForThoseWhoHaveLeft) {
-  std::latch may_go_on(1);
+  std::latch begun(1), may_go_on(1);
   std::atomic<int> done = 0;
   std::atomic<bool> left = false;
   const auto held = std::make_shared<int>();
   Crew crew(1, 1);
-  crew.enqueue({[&] { may_go_on.wait(); }});
+  crew.enqueue({[&] {
+    begun.count_down();
+    may_go_on.wait();
+  }});
+  begun.wait();
   for (int i = 0; i < 100; ++i) crew.enqueue({[&, held] { ++done; }, "a", {}, [&] { return left.load(); }});
   left = true;
   may_go_on.count_down();
@@ -71,4 +75,4 @@ TEST(Crew, DoesNothingForThoseWhoHaveLeft) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::crew_test

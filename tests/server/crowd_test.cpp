@@ -12,7 +12,7 @@
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 
-namespace signorini::server {
+namespace signorini::server::crowd_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -119,4 +119,4 @@ TEST(Crowd, OfEveryKindLeavesTheServiceToOthers) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::crowd_test

@@ -11,7 +11,7 @@
 #include "api/examples.hpp"
 #include "long_tests.hpp"
 
-namespace signorini::server {
+namespace signorini::server::daemon_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -462,4 +462,4 @@ TEST(SolveCommand, EndsOnCtrlC) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::daemon_test

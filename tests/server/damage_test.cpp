@@ -18,7 +18,7 @@
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::damage_test {
 namespace {
 
 using nlohmann::json;
@@ -361,4 +361,4 @@ TEST_F(DamagedLog, IsToldByTheCheck) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::damage_test

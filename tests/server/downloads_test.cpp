@@ -1,6 +1,6 @@
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::downloads_test {
 namespace {
 
 using nlohmann::json;
@@ -134,4 +134,4 @@ TEST_F(Downloads, RefuseTheInvariantsForAMembrane) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::downloads_test

@@ -8,7 +8,7 @@
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::durable_service_test {
 namespace {
 
 using nlohmann::json;
@@ -154,4 +154,4 @@ TEST_F(DurableService, RefusesCleanlyWhileTheDiskIsFullAndRecovers) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::durable_service_test

@@ -21,7 +21,7 @@
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::ends_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -165,4 +165,4 @@ TEST(Ports, ThatKubernetesSetsForAServiceAreNone) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::ends_test

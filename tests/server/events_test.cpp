@@ -5,7 +5,7 @@
 
 #include "raw_client.hpp"
 
-namespace signorini::server {
+namespace signorini::server::events_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -278,4 +278,4 @@ TEST(EventStreams, SendCommentsInTheSilence) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::events_test

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <http_parser.h>
 
-namespace signorini::server {
+namespace signorini::server::framing_peer_test {
 namespace {
 
 /// What a parser makes of some bytes: the bodies of the requests that it takes, up to the first that it
@@ -142,4 +142,4 @@ TEST(FramingPeer, IsNotSwayedByPieces) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::framing_peer_test

@@ -14,7 +14,7 @@
 #include "raw_client.hpp"
 #include "reply_reader.hpp"
 
-namespace signorini::server {
+namespace signorini::server::guests_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -244,4 +244,4 @@ TEST_F(Waiters, HoldNoThreadsAndAreNoticedWhenTheyLeave) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::guests_test

@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace signorini::server {
+namespace signorini::server::hatch_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -134,4 +134,4 @@ TEST_F(AtTheHatch, WhoStillTakesWhenAllEndsHasAMoment) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::hatch_test

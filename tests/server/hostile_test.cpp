@@ -21,7 +21,7 @@
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 
-namespace signorini::server {
+namespace signorini::server::hostile_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -416,4 +416,4 @@ TEST_F(Hostile, Slowhttptest) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::hostile_test

@@ -1,6 +1,6 @@
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::http_test {
 namespace {
 
 using nlohmann::json;
@@ -271,4 +271,4 @@ TEST_F(Http, ExamplesCanBePosted) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::http_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::server {
+namespace signorini::server::job_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -21,4 +21,4 @@ TEST(JobStatus, NamesAreReadBack) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::job_test

@@ -7,7 +7,7 @@
 #include "api/problem_json.hpp"
 #include "server/jobs/run.hpp"
 
-namespace signorini::server {
+namespace signorini::server::kept_operators_test {
 namespace {
 
 /// The paper's problem with n × n squares, fixed at the left; the data are of no matter.
@@ -82,4 +82,4 @@ TEST(KeptOperators, ServeWorkersWhileTheyAreDropped) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::kept_operators_test

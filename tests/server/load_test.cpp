@@ -13,7 +13,7 @@
 #include "long_tests.hpp"
 #include "process_figures.hpp"
 
-namespace signorini::server {
+namespace signorini::server::load_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -116,4 +116,4 @@ TEST(Soak, LeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::load_test

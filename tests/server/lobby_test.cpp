@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace signorini::server {
+namespace signorini::server::lobby_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -121,4 +121,4 @@ TEST_F(InTheLobby, ABodyThatHasComeKeepsTheRoomThatItTakes) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::lobby_test

@@ -9,7 +9,7 @@
 
 #include "server/failure.hpp"
 
-namespace signorini::server {
+namespace signorini::server::log_test {
 namespace {
 
 /// Writes a line; the log belongs to the service, which writes one for what nobody foresaw.
@@ -66,4 +66,4 @@ TEST(Log, WritesAnObjectALine) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::log_test

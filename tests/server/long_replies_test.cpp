@@ -20,7 +20,7 @@
 #include "server/jobs/sqlite_store.hpp"
 #include "store_jobs.hpp"
 
-namespace signorini::server {
+namespace signorini::server::long_replies_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -217,4 +217,4 @@ TEST_F(SlowReaders, AreLeftWhereTheyStandInTheWay) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::long_replies_test

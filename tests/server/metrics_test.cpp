@@ -3,7 +3,7 @@
 
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::metrics_test {
 namespace {
 
 /// The samples of a text in Prometheus's format by name and labels; a line that is none fails the test.
@@ -82,4 +82,4 @@ TEST_F(MetricsTest, TellOfTheProcess) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::metrics_test

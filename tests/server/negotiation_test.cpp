@@ -5,7 +5,7 @@
 #include "server/http/query.hpp"
 #include "server/http/router.hpp"
 
-namespace signorini::server {
+namespace signorini::server::negotiation_test {
 namespace {
 
 TEST(ContentType, KnowsJson) {
@@ -110,4 +110,4 @@ TEST(Router, BindsPathParameters) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::negotiation_test

@@ -5,7 +5,7 @@
 
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::openapi_test {
 namespace {
 
 using nlohmann::json;
@@ -81,4 +81,4 @@ TEST_F(OpenapiTest, IsShownByAPageThatLoadsNothingFromElsewhere) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::openapi_test

@@ -11,7 +11,7 @@
 #include "server/access/bearer_tokens.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::ownership_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -224,4 +224,4 @@ TEST(Hangup, EndsNoService) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::ownership_test

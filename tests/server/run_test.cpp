@@ -8,7 +8,7 @@
 #include "example_problems.hpp"
 #include "solve.hpp"
 
-namespace signorini::server {
+namespace signorini::server::run_test {
 namespace {
 
 Claim claim_of(const std::string& problem) {
@@ -63,4 +63,4 @@ TEST(Run, LeavesNoLimitBehind) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::run_test

@@ -4,7 +4,7 @@
 
 #include "raw_client.hpp"
 
-namespace signorini::server {
+namespace signorini::server::solves_test {
 namespace {
 
 using nlohmann::json;
@@ -291,4 +291,4 @@ TEST_F(Solves, AnswerHttp10WithoutChunks) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::solves_test

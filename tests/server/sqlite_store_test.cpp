@@ -16,7 +16,7 @@
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::sqlite_store_test {
 namespace {
 
 class SqliteStoreTest : public testing::Test {
@@ -378,4 +378,4 @@ TEST_F(SqliteStoreTest, AReaderDoesNotWaitForAWriter) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::sqlite_store_test

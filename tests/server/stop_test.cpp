@@ -3,7 +3,7 @@
 #include <atomic>
 #include <thread>
 
-namespace signorini::server {
+namespace signorini::server::stop_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -108,4 +108,4 @@ TEST(Listener, TwoCannotShareAPort) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::stop_test

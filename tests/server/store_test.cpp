@@ -10,7 +10,7 @@
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"
 
-namespace signorini::server {
+namespace signorini::server::store_test {
 namespace {
 
 struct StoreKind {
@@ -283,4 +283,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Store,
                          [](const auto& kind) { return kind.param.name; });
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::store_test

@@ -13,7 +13,7 @@
 #include "solution_members.hpp"
 #include "store_jobs.hpp"
 
-namespace signorini::server {
+namespace signorini::server::stored_form_test {
 namespace {
 
 /// All that a client can ever see of a solution, in every format.
@@ -128,4 +128,4 @@ TEST(StoredForm, SeesDamage) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::stored_form_test

@@ -4,7 +4,7 @@
 
 #include "running_service.hpp"
 
-namespace signorini::server {
+namespace signorini::server::trace_test {
 namespace {
 
 const std::string id = "0af7651916cd43dd8448eb211c80319c";
@@ -40,4 +40,4 @@ TEST_F(ServiceTest, TellsTheTraceOfARequestToItsReplyAndItsJob) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::trace_test

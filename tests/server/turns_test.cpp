@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::server {
+namespace signorini::server::turns_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -69,4 +69,4 @@ TEST_F(Order, LeavesOutWhatNobodyWants) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::turns_test

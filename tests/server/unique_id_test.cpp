@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::server {
+namespace signorini::server::unique_id_test {
 namespace {
 
 TEST(UniqueIds, GrowAndAreUrlSafe) {
@@ -27,4 +27,4 @@ TEST(UniqueIds, TellTheirForm) {
 }
 
 }  // namespace
-}  // namespace signorini::server
+}  // namespace signorini::server::unique_id_test

@@ -11,7 +11,7 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::adapt_test {
 namespace {
 
 constexpr std::array schemes{Scheme::conforming, Scheme::nonconforming};
@@ -313,4 +313,4 @@ TEST(Adapt, IsEstimatedAtItsCap) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::adapt_test

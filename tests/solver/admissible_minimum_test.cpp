@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-namespace signorini {
+namespace signorini::admissible_minimum_test {
 namespace {
 
 /// A chain of rows, each with unknowns of its neighbours, some of them twice or the sum of two others.
@@ -103,4 +103,4 @@ TEST(AdmissibleMinimum, MeetsConditionsLeavesWhatIsKeptAndPaysForRoom) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::admissible_minimum_test

@@ -13,7 +13,7 @@
 #include "mesh_quality.hpp"
 #include "problems/elasticity.hpp"
 
-namespace signorini {
+namespace signorini::arc_test {
 namespace {
 
 using std::numbers::pi;
@@ -253,4 +253,4 @@ TEST(Arcs, NotesSayWhatThePeakAndTheBoundMean) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::arc_test

@@ -12,7 +12,7 @@
 #include "mesh/submesh.hpp"
 #include "mesh_quality.hpp"
 
-namespace signorini {
+namespace signorini::bisect_test {
 namespace {
 
 /// A rectangle of each pattern, an L-shape with a hole, and a given mesh of thin triangles.
@@ -159,4 +159,4 @@ TEST(Bisect, OfNothingChangesNothing) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::bisect_test

@@ -13,7 +13,7 @@
 #include "server/long_tests.hpp"
 #include "study.hpp"
 
-namespace signorini {
+namespace signorini::cancel_test {
 namespace {
 
 /// Ends a solve at a moment, and knows the phase it was in.
@@ -194,4 +194,4 @@ TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::cancel_test

@@ -19,7 +19,7 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::certificate_test {
 namespace {
 
 constexpr std::array schemes{Scheme::conforming, Scheme::nonconforming};
@@ -403,4 +403,4 @@ TEST(Certificate, SharesTheBoundOutToTheTriangles) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::certificate_test

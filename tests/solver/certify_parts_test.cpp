@@ -19,7 +19,7 @@
 #include "requested_mesh.hpp"
 #include "solved_problem.hpp"
 
-namespace signorini {
+namespace signorini::certify_parts_test {
 namespace {
 
 class Parts : public testing::TestWithParam<Scheme> {};
@@ -361,4 +361,4 @@ TEST(NearestAdmissible, LiesOnOneConstraintOrInTheCorner) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::certify_parts_test

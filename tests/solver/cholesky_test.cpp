@@ -12,7 +12,7 @@
 #include "system/dense_cholesky.hpp"
 #include "system/symmetric_product.hpp"
 
-namespace signorini {
+namespace signorini::cholesky_test {
 namespace {
 
 /// A symmetric matrix whose unknowns lie at points, as a sum of elements.
@@ -231,4 +231,4 @@ TEST(DenseCholesky, LongWorkEndsWhenTheObserverDoes) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::cholesky_test

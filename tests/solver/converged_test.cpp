@@ -6,7 +6,7 @@
 #include "problems/sanitized.hpp"
 #include "solve.hpp"
 
-namespace signorini {
+namespace signorini::converged_test {
 namespace {
 
 double largest_contact_residual(const Residuals& left) {
@@ -180,4 +180,4 @@ TEST(Stalled, IsNotThePapersFormThatGetsThere) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::converged_test

@@ -7,7 +7,7 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::data_test {
 namespace {
 
 /// u = 1 + 2x − 3y + (x² + xy) / 2 with κ = [2 0.5; 0.5 1]: σ = κ∇u is linear, f constant.
@@ -186,4 +186,4 @@ TEST(Meshes, LargestEdgeIsKept) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::data_test

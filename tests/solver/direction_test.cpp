@@ -5,7 +5,7 @@
 
 #include "problems/elasticity.hpp"
 
-namespace signorini {
+namespace signorini::direction_test {
 namespace {
 
 constexpr std::array kSchemes{Scheme::conforming, Scheme::nonconforming};
@@ -136,4 +136,4 @@ TEST(Direction, MustPointOutOfTheBody) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::direction_test

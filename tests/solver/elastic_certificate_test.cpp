@@ -13,7 +13,7 @@
 #include "problems/sanitized.hpp"
 #include "solve.hpp"
 
-namespace signorini {
+namespace signorini::elastic_certificate_test {
 namespace {
 
 Solution solved(const Problem& problem) {
@@ -452,4 +452,4 @@ TEST(Certificate, OfAnElasticBodyDoesNotDependOnUnits) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::elastic_certificate_test

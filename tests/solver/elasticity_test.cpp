@@ -6,7 +6,7 @@
 #include "problems/elasticity.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::elasticity_test {
 namespace {
 
 struct PatchCase {
@@ -379,4 +379,4 @@ TEST(Reactions, BalanceTheMomentsOfLoadsThatVaryWithinATriangle) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::elasticity_test

@@ -9,7 +9,7 @@
 #include "fem/quadrature.hpp"
 #include "fem/raviart_thomas.hpp"
 
-namespace signorini {
+namespace signorini::elements_test {
 namespace {
 
 std::array<Point, 3> random_triangle(std::mt19937& engine) {
@@ -157,4 +157,4 @@ TEST(Quadrature, IsExactToItsDegree) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::elements_test

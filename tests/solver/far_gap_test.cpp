@@ -7,7 +7,7 @@
 #include "problems/membrane.hpp"
 #include "solve.hpp"
 
-namespace signorini {
+namespace signorini::far_gap_test {
 namespace {
 
 Problem membrane(Scheme scheme, double gap) {
@@ -110,4 +110,4 @@ TEST(FarGap, InASweep) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::far_gap_test

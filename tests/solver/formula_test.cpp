@@ -14,7 +14,7 @@
 #include "formula/taylor_model.hpp"
 #include "problem/field.hpp"
 
-namespace signorini {
+namespace signorini::formula_test {
 namespace {
 
 /// All operations, with smooth, steep, kinked and jumping functions, and some with poles or branch points near by.
@@ -225,4 +225,4 @@ TEST(TrianglePieces, EndWhereNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::formula_test

@@ -8,7 +8,7 @@
 #include "mesh/rectangle.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::gap_bubble_test {
 namespace {
 
 /// An edge of a unit square's lower side, from x = 0 to x = 1.
@@ -65,4 +65,4 @@ TEST(GapBubble, IsFiniteWithAKinkCloseToAnEnd) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::gap_bubble_test

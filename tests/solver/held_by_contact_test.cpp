@@ -3,7 +3,7 @@
 
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::held_by_contact_test {
 namespace {
 
 Problem resting(Scheme scheme, double load, double gap) {
@@ -102,4 +102,4 @@ TEST(NothingHolds, FreeEverywhereIsAFault) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::held_by_contact_test

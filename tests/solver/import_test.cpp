@@ -9,7 +9,7 @@
 #include "mesh_quality.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::import_test {
 namespace {
 
 /// Two triangles on the unit square.
@@ -338,4 +338,4 @@ TEST(ImportMesh, TakesLargeMeshesInItsStride) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::import_test

@@ -13,7 +13,7 @@
 #include "mesh/refine.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::jump_oscillation_test {
 namespace {
 
 using Corners = std::array<Point, 3>;
@@ -125,4 +125,4 @@ TEST(JumpOscillation, IsABoundOnAnyTriangle) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::jump_oscillation_test

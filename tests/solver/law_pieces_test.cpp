@@ -12,7 +12,7 @@
 #include "problems/membrane.hpp"
 #include "requested_mesh.hpp"
 
-namespace signorini {
+namespace signorini::law_pieces_test {
 namespace {
 
 /// Entries of very different sizes, and waves that no triangle resolves: known to be positive definite all
@@ -118,4 +118,4 @@ TEST(TriangleSums, AreOffByNoMoreThanTheirSlack) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::law_pieces_test

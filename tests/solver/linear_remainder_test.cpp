@@ -13,7 +13,7 @@
 #include "fem/quadrature.hpp"
 #include "mesh/refine.hpp"
 
-namespace signorini {
+namespace signorini::linear_remainder_test {
 namespace {
 
 /// The triangle cut into similar ones, four times as many each time. Part e of the boundary is its edge e.
@@ -203,4 +203,4 @@ TEST(LinearRemainder, IsNotLessThanThatOfAnExample) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::linear_remainder_test

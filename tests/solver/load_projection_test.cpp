@@ -9,7 +9,7 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::load_projection_test {
 namespace {
 
 double area(const std::array<Point, 3>& corners) {
@@ -44,4 +44,4 @@ TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::load_projection_test

@@ -8,7 +8,7 @@
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::memory_test {
 namespace {
 
 bool long_tests() {
@@ -213,4 +213,4 @@ TEST(MemoryLimit, EndsASolveBeyondIt) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::memory_test

@@ -9,7 +9,7 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::methods_test {
 namespace {
 
 double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -302,4 +302,4 @@ TEST(Units, PaperFormScalesWithItsParameters) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::methods_test

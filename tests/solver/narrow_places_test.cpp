@@ -11,7 +11,7 @@
 #include "mesh/polygon.hpp"
 #include "mesh_quality.hpp"
 
-namespace signorini {
+namespace signorini::narrow_places_test {
 namespace {
 
 const std::vector<Point> kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -186,4 +186,4 @@ TEST(NarrowPlaces, EveryRandomPolygonEndsSoon) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::narrow_places_test

@@ -5,7 +5,7 @@
 #include "problems/membrane.hpp"
 #include "solve.hpp"
 
-namespace signorini {
+namespace signorini::overlap_test {
 namespace {
 
 constexpr std::array kSchemes{Scheme::conforming, Scheme::nonconforming};
@@ -88,4 +88,4 @@ TEST(Overlap, InTheFixedPointAloneIsNone) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::overlap_test

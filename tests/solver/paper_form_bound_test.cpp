@@ -6,7 +6,7 @@
 #include "solve.hpp"
 #include "true_errors.hpp"
 
-namespace signorini {
+namespace signorini::paper_form_bound_test {
 namespace {
 
 using problems::SignoriniEdge;
@@ -83,4 +83,4 @@ TEST(EnergyNorm, OfAStressCountsTheLawWithinATriangle) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::paper_form_bound_test

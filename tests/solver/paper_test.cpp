@@ -4,7 +4,7 @@
 #include "norms.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::paper_test {
 namespace {
 
 using problems::PaperValues;
@@ -116,4 +116,4 @@ TEST(Paper, NonconformingEnergyConvergesAtRateTwo) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::paper_test

@@ -8,7 +8,7 @@
 #include "mesh/submesh.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::patch_pairs_test {
 namespace {
 
 using Exact = problems::SignoriniEdge;
@@ -324,4 +324,4 @@ TEST(Relaxation, MeasuresACurlByTheGradient) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::patch_pairs_test

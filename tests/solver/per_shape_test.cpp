@@ -5,7 +5,7 @@
 #include "mesh/rectangle.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::per_shape_test {
 namespace {
 
 /// How many values are made for the triangles of a mesh.
@@ -30,4 +30,4 @@ TEST(PerShape, TellsShapesApartButForRounding) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::per_shape_test

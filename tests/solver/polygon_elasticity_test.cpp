@@ -6,7 +6,7 @@
 #include "problems/elasticity.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::polygon_elasticity_test {
 namespace {
 
 /// The points turned by an angle about the origin.
@@ -257,4 +257,4 @@ TEST(Orthotropic, ATurnedBlockIsTheSameBlock) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::polygon_elasticity_test

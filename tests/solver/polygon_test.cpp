@@ -5,7 +5,7 @@
 
 #include "mesh_quality.hpp"
 
-namespace signorini {
+namespace signorini::polygon_test {
 namespace {
 
 const std::vector<Point> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -299,4 +299,4 @@ TEST(SizeFaults, AreAllNamed) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::polygon_test

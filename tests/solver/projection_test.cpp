@@ -9,7 +9,7 @@
 #include "fem/triangle_pieces.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::projection_test {
 namespace {
 
 const std::array<Point, 3> kReference{Point(0, 0), Point(1, 0), Point(0, 1)};
@@ -43,4 +43,4 @@ TEST(Projection, OfASmallWaveOnALargeValueLosesNothing) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::projection_test

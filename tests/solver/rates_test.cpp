@@ -4,7 +4,7 @@
 #include "norms.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::rates_test {
 namespace {
 
 using problems::SignoriniEdge;
@@ -56,4 +56,4 @@ TEST(Rates, PressureOfTheSignoriniEdge) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::rates_test

@@ -6,7 +6,7 @@
 #include "mesh/rectangle.hpp"
 #include "mesh_quality.hpp"
 
-namespace signorini {
+namespace signorini::refine_test {
 namespace {
 
 TEST(Refine, CutsEveryTriangleInFourSimilarOnes) {
@@ -48,4 +48,4 @@ TEST(Refine, HasNoMoreTrianglesThanAllowed) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::refine_test

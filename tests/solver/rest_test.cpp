@@ -3,7 +3,7 @@
 
 #include "problems/elasticity.hpp"
 
-namespace signorini {
+namespace signorini::rest_test {
 namespace {
 
 using Boundary = std::map<std::string, Condition>;
@@ -154,4 +154,4 @@ TEST(Rest, ASmallBodyBesideALargeOneIsHeldAllTheSame) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::rest_test

@@ -6,7 +6,7 @@
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::reuse_test {
 namespace {
 
 Solution solve_with(problems::Shelf& shelf, const Problem& problem, const Settings& settings) {
@@ -142,4 +142,4 @@ TEST(Reuse, ManyThreadsMayUseOneOperator) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::reuse_test

@@ -6,7 +6,7 @@
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
 
-namespace signorini {
+namespace signorini::rough_data_test {
 namespace {
 
 /// A square of 4 x 4 squares that lies on its bottom.
@@ -147,4 +147,4 @@ TEST(RoughData, AMeshRefinesItselfForALoadWithoutSlopes) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::rough_data_test

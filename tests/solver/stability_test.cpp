@@ -13,7 +13,7 @@
 #include "problems/elasticity.hpp"
 #include "system/hybrid_system.hpp"
 
-namespace signorini {
+namespace signorini::stability_test {
 namespace {
 
 constexpr std::array kSchemes{Scheme::nonconforming, Scheme::conforming};
@@ -270,4 +270,4 @@ TEST(WorthNothing, AStressThatIsZeroIsNoReason) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::stability_test

@@ -15,7 +15,7 @@
 #include "requested_mesh.hpp"
 #include "solved_problem.hpp"
 
-namespace signorini {
+namespace signorini::star_relaxation_test {
 namespace {
 
 /// Random positive definite forms on a mesh, with some unknowns that are held.
@@ -181,4 +181,4 @@ TEST(DisplacementRelaxation, LowersTheEnergyAndKeepsWhatIsGiven) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::star_relaxation_test

@@ -4,7 +4,7 @@
 #include "problems/elasticity.hpp"
 #include "solve.hpp"
 
-namespace signorini {
+namespace signorini::strain_notes_test {
 namespace {
 
 bool says(const Solution& solution, const std::string& what) {
@@ -39,4 +39,4 @@ TEST(StrainNotes, SayThatALoadIsTooLarge) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::strain_notes_test

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-namespace signorini {
+namespace signorini::stress_invariants_test {
 namespace {
 
 /// Random stresses (σ_xx, σ_yy, σ_xy, σ_zz) as tensors: their invariants from the eigenvalues.
@@ -46,4 +46,4 @@ TEST(StressInvariants, StayWithinTheRangeOfNumbers) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::stress_invariants_test

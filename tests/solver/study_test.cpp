@@ -7,7 +7,7 @@
 #include "problems/elasticity.hpp"
 #include "true_errors.hpp"
 
-namespace signorini {
+namespace signorini::study_test {
 namespace {
 
 const Settings active_set{ActiveSet{}, std::nullopt};
@@ -314,4 +314,4 @@ TEST(StudyRates, AreExponentsOfTheEdgeLength) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::study_test

@@ -6,7 +6,7 @@
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
 
-namespace signorini {
+namespace signorini::sweep_test {
 namespace {
 
 Variation data_of(const Problem& problem, std::string load_key) {
@@ -235,4 +235,4 @@ TEST(Sweep, TheTimeLimitIsForTheWhole) {
 }
 
 }  // namespace
-}  // namespace signorini
+}  // namespace signorini::sweep_test
