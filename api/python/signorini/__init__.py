@@ -1,0 +1,67 @@
+"""A client of Signorini, which solves contact problems without friction with a guaranteed error bound.
+
+    from signorini import Client
+    client = Client("http://127.0.0.1:8080")
+    client.solve(client.example("elastic-block")).plot("von_mises", deformed=5)
+"""
+
+from .async_client import AsyncClient
+from .boundary import Contact, Fixed, Roller, Traction
+from .client import Client
+from .domain import Arc, Circle, CircularHole, Gmsh, GivenMesh, Polygon, Rectangle, Vertex
+from .errors import (
+    Fault,
+    NotInResult,
+    PackageMissing,
+    Refused,
+    ServiceUnreachable,
+    SignoriniError,
+    SolveFailed,
+)
+from .local import Local
+from .material import HookeTensor, MembraneMaterial, YoungPoisson
+from .mesh_request import Adaptive, LocalSize, MeshRequest
+from .problem import Load, Problem, Solver, Variation
+from .result import Result
+from .study import Exact, Study
+from .summary import Estimate, Summary
+
+__all__ = [
+    "Adaptive",
+    "Arc",
+    "AsyncClient",
+    "Circle",
+    "CircularHole",
+    "Client",
+    "Contact",
+    "Estimate",
+    "Exact",
+    "Fault",
+    "Fixed",
+    "GivenMesh",
+    "Gmsh",
+    "HookeTensor",
+    "Load",
+    "Local",
+    "LocalSize",
+    "MembraneMaterial",
+    "MeshRequest",
+    "NotInResult",
+    "PackageMissing",
+    "Polygon",
+    "Problem",
+    "Rectangle",
+    "Refused",
+    "Result",
+    "Roller",
+    "ServiceUnreachable",
+    "SignoriniError",
+    "SolveFailed",
+    "Solver",
+    "Study",
+    "Summary",
+    "Traction",
+    "Variation",
+    "Vertex",
+    "YoungPoisson",
+]

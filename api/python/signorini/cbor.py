@@ -1,0 +1,125 @@
+"""Reads CBOR (RFC 8949) with the typed arrays (RFC 8746) that the service writes."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from .arrays import from_bytes
+
+ROW_MAJOR, INT32, FLOAT64 = 40, 78, 86
+_CODES = {INT32: "i4", FLOAT64: "f8"}
+_BREAK = object()
+
+
+class CborError(ValueError):
+    """What was read is no CBOR, or has something in it that the service does not write."""
+
+
+def loads(document: bytes) -> Any:
+    """The value of one CBOR document: dict, list, str, bytes, int, float, bool, None, and arrays.
+
+    Raises CborError if the document is cut off, goes on after its end, or is none.
+    """
+    reader = _Reader(document)
+    value = reader.value()
+    if value is _BREAK or reader.place != len(document):
+        raise CborError(f"the document should end at byte {reader.place}")
+    return value
+
+
+class _Reader:
+    def __init__(self, document: bytes) -> None:
+        self.document = document
+        self.place = 0
+
+    def value(self) -> Any:
+        initial = self.take(1)[0]
+        major, low = initial >> 5, initial & 31
+        if major == 7:
+            return self.simple(low)
+        if low == 31:
+            return self.indefinite(major)
+        count = self.argument(low)
+        if major == 0:
+            return count
+        if major == 1:
+            return -1 - count
+        if major == 2:
+            return self.take(count)
+        if major == 3:
+            return str(self.take(count), "utf-8")
+        if major == 4:
+            return [self.value() for _ in range(count)]
+        if major == 5:
+            return {self.value(): self.value() for _ in range(count)}
+        return self.tagged(count)
+
+    def take(self, count: int) -> bytes:
+        end = self.place + count
+        if end > len(self.document):
+            raise CborError(f"the document is cut off at byte {len(self.document)}")
+        found = self.document[self.place : end]
+        self.place = end
+        return found
+
+    def argument(self, low: int) -> int:
+        if low < 24:
+            return low
+        if low > 27:
+            raise CborError(f"byte {self.place - 1} begins nothing")
+        return int.from_bytes(self.take(1 << (low - 24)), "big")
+
+    def simple(self, low: int) -> Any:
+        if low == 31:
+            return _BREAK
+        if low in (25, 26, 27):
+            return struct.unpack({25: ">e", 26: ">f", 27: ">d"}[low], self.take(1 << (low - 24)))[0]
+        try:
+            return {20: False, 21: True, 22: None, 23: None}[self.argument(low)]
+        except KeyError as unknown:
+            raise CborError(f"the simple value {unknown} is not known") from None
+
+    def indefinite(self, major: int) -> Any:
+        if major not in (2, 3, 4, 5):
+            raise CborError(f"byte {self.place - 1} begins nothing")
+        pieces: list[Any] = []
+        while (piece := self.value()) is not _BREAK:
+            pieces.append(piece)
+        if major == 5:
+            if len(pieces) % 2:
+                raise CborError("a member has a name and no value")
+            return dict(zip(pieces[::2], pieces[1::2]))
+        if major == 4:
+            return pieces
+        return b"".join(pieces) if major == 2 else "".join(pieces)
+
+    def tagged(self, tag: int) -> Any:
+        if tag == ROW_MAJOR:
+            return self.several_extents()
+        if tag in _CODES:
+            data = self.data()
+            return self.array(tag, data, [len(data) // int(_CODES[tag][1])])
+        raise CborError(f"the tag {tag} is not known")
+
+    def several_extents(self) -> Any:
+        if self.take(1) != b"\x82":
+            raise CborError("an array of several extents is a pair")
+        extents = self.value()
+        head = self.take(1)[0]
+        tag = self.argument(head & 31)
+        if head >> 5 != 6 or tag not in _CODES:
+            raise CborError("an array of several extents holds a typed array")
+        return self.array(tag, self.data(), extents)
+
+    def array(self, tag: int, data: bytes, extents: Any) -> Any:
+        try:
+            return from_bytes(data, _CODES[tag], extents)
+        except (ValueError, TypeError) as error:
+            raise CborError(f"{len(data)} bytes are no array of the extents {extents}") from error
+
+    def data(self) -> bytes:
+        data = self.value()
+        if not isinstance(data, bytes):
+            raise CborError("a typed array is made of bytes")
+        return data

@@ -1,0 +1,141 @@
+"""A client of the service that waits."""
+
+from __future__ import annotations
+
+import http.client
+import ssl
+import time
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from . import conversation, questions
+from .conversation import Line
+from .document import read
+from .exchange import Answer, Conversation, Endpoint, Event, Lost, Reply, Request, Step
+from .questions import AnyProblem, Progress
+from .result import Result
+from .summary import Estimate
+
+
+class Client:
+    """A service at an address.
+
+    `token` is one of the service's, if it wants one; `context` is for https. A service that was reached and does not
+    answer any more is tried for `patience` seconds, then ServiceUnreachable is raised; one that never answered raises
+    it at once. A client has no connection of its own and may be used by several threads.
+    """
+
+    def __init__(
+        self,
+        url: str = "http://127.0.0.1:8080",
+        *,
+        token: str | None = None,
+        patience: float = 60.0,
+        context: ssl.SSLContext | None = None,
+    ) -> None:
+        self._endpoint = Endpoint(url, token)
+        self._patience = patience
+        self._context = context
+
+    def solve(self, problem: AnyProblem, *, fields: Sequence[str] | None = None) -> Result:
+        """Solves a problem and waits for its result.
+
+        `fields` names the members of the result besides `summary`; by default all that there are. A full queue is
+        waited for. Ctrl-C cancels the solve. Raises SolveFailed, whose `result` has the last iterate, Refused with the
+        faults of a bad problem, and ServiceUnreachable.
+        """
+        return self._run(conversation.solve(self._line(), questions.ticket(problem, fields))).check()
+
+    def map(
+        self, problems: Iterable[AnyProblem], *, fields: Sequence[str] | None = None, progress: Progress = False
+    ) -> list[Result]:
+        """Solves many problems and returns their results in the same order.
+
+        The queue of the service is kept full but for a quarter. After 503 nothing is added within `Retry-After`, after
+        a lost connection and a restart of the service all goes on, and nothing is solved twice. `progress=True` shows a
+        bar; a function is called with how many are done and how many there are. A solve that fails raises nothing here:
+        its result has the `status` `failed`, and `check()`. Ctrl-C cancels what was not fetched. Raises Refused, with the
+        `index` of the bad problem, after the others were cancelled, and ServiceUnreachable.
+        """
+        tickets = questions.tickets(problems, fields)
+        return self._run(conversation.solve_all(self._line(), tickets, questions.teller(progress, len(tickets))))
+
+    def result(self, id: str, *, fields: Sequence[str] | None = None) -> Result:
+        """The result of an earlier solve. Raises Refused if there is none (404, 410) or not yet (409)."""
+        return Result(self._ask(questions.result(id, fields)))
+
+    def validate(self, problem: AnyProblem) -> Estimate:
+        """Sizes of a problem and what it would cost. Raises Refused with its faults."""
+        estimate: Estimate = read(Estimate, self._ask(questions.validation(problem)))
+        return estimate
+
+    def examples(self) -> list[str]:
+        """The names of the examples of the service."""
+        return [example["name"] for example in self._ask(questions.examples())["examples"]]
+
+    def example(self, name: str) -> dict[str, Any]:
+        """An example as a document, which can be changed and solved. Raises Refused if there is none of this name."""
+        document: dict[str, Any] = self._ask(questions.example(name))
+        return document
+
+    def _line(self) -> Line:
+        return Line(self._patience)
+
+    def _ask(self, request: Request) -> Any:
+        return self._run(conversation.ask(self._line(), request))
+
+    def _run(self, talk: Conversation[Answer]) -> Answer:
+        connection = _Connection(self._endpoint, self._context)
+        try:
+            step = next(talk)
+            while True:
+                try:
+                    event = connection.do(step)
+                except BaseException as interruption:
+                    connection.close()
+                    step = talk.throw(interruption)
+                else:
+                    step = talk.send(event)
+        except StopIteration as end:
+            answer: Answer = end.value
+            return answer
+        finally:
+            connection.close()
+
+
+class _Connection:
+    """Does the steps of one conversation by one connection, which is opened again when it is lost."""
+
+    def __init__(self, endpoint: Endpoint, context: ssl.SSLContext | None) -> None:
+        self.endpoint = endpoint
+        self.http: http.client.HTTPConnection
+        if endpoint.is_secure:
+            self.http = http.client.HTTPSConnection(endpoint.host, endpoint.port, context=context)
+        else:
+            self.http = http.client.HTTPConnection(endpoint.host, endpoint.port)
+
+    def close(self) -> None:
+        self.http.close()
+
+    def do(self, step: Step) -> Event:
+        if not isinstance(step, Request):
+            time.sleep(step.seconds)
+            return None
+        try:
+            return self.reply(step)
+        except (OSError, http.client.HTTPException) as error:
+            was_open = self.http.sock is not None
+            self.close()
+            return Lost(f"{self.endpoint.url}: {error!r}", sent=was_open)
+
+    def reply(self, request: Request) -> Reply:
+        self.http.timeout = request.timeout
+        if self.http.sock is None:
+            self.http.connect()
+        else:
+            self.http.sock.settimeout(request.timeout)
+        path, headers = self.endpoint.path(request), self.endpoint.headers(request)
+        self.http.request(request.method, path, request.body or None, headers)
+        with self.http.getresponse() as response:
+            body = response.read()
+        return Reply(response.status, {name.lower(): value for name, value in response.getheaders()}, body)

@@ -1,0 +1,95 @@
+"""Pictures of results, by matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .export import package
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+    from .result import Result
+
+_COMPONENTS = {2: ("x", "y"), 3: ("xx", "yy", "xy")}
+
+
+def plot(
+    result: Result, field: str = "displacement", *, deformed: float = 0.0, axes: matplotlib.axes.Axes | None = None
+) -> matplotlib.axes.Axes:
+    """Draws a field on the body, or curves, and returns the axes.
+
+    `field` is `displacement` (of an elastic body its length), `stress` (its norm), a component of it (`stress_x`,
+    `stress_y` of a membrane, `stress_xx`, `stress_yy`, `stress_xy` of an elastic body), `von_mises`, or one of the
+    curves `contact` (pressure and clearance along each part) and `history` (the residuals). `deformed` times the
+    displacement is added to the points of an elastic body. Stresses have one colour in each triangle. Without `axes`
+    new ones are made. Raises ValueError for another field, PackageMissing without matplotlib or NumPy, NotInResult.
+    """
+    pyplot = package("matplotlib.pyplot", "plot()")
+    numpy = package("numpy", "plot()")
+    values = None if field in ("contact", "history") else _values(numpy, result, field)
+    if axes is None:
+        axes = pyplot.subplots()[1]
+    if field == "contact":
+        _draw_contact(numpy, result, axes)
+    elif field == "history":
+        _draw_history(result, axes)
+    else:
+        _draw_on_body(result, field, values, deformed, axes)
+    return axes
+
+
+def _values(numpy: Any, result: Result, field: str) -> Any:
+    """A value a point, or one a triangle."""
+    if field == "displacement":
+        values = result.displacement.at_points
+        return values if values.ndim == 1 else numpy.linalg.norm(values, axis=1)
+    if field == "von_mises":
+        return result.von_mises
+    name, _, component = field.partition("_")
+    if name == "stress":
+        stress = result.stress.at_centroids
+        components = _COMPONENTS[stress.shape[1]]
+        if not component:
+            return numpy.sqrt((stress**2).sum(axis=1) + (stress[:, 2] ** 2 if len(components) == 3 else 0))
+        if component in components:
+            return stress[:, components.index(component)]
+    raise ValueError(
+        f"there is no field {field!r}; there are displacement, stress, stress_x, stress_y of a membrane, stress_xx, "
+        "stress_yy, stress_xy of an elastic body, von_mises, contact and history"
+    )
+
+
+def _draw_on_body(result: Result, field: str, values: Any, deformed: float, axes: Any) -> None:
+    points = result.mesh.points
+    if deformed and result.displacement.at_points.ndim == 2:
+        points = points + deformed * result.displacement.at_points
+    how = {"shading": "gouraud"} if field == "displacement" else {"shading": "flat", "facecolors": values}
+    arguments = [values] if field == "displacement" else []
+    drawn = axes.tripcolor(*points.T, result.mesh.triangles, *arguments, rasterized=len(points) > 20_000, **how)
+    axes.figure.colorbar(drawn, ax=axes, label=field.replace("_", " "))
+    axes.set(aspect="equal", xlabel="x", ylabel="y")
+
+
+def _draw_contact(numpy: Any, result: Result, axes: Any) -> None:
+    """Pressures to the left, clearances to the right, by the way along each part."""
+    right = axes.twinx()
+    for name, part in result.contact.items():
+        steps = numpy.linalg.norm(numpy.diff(part.points, axis=0), axis=1)
+        way = numpy.concatenate([[0.0], numpy.cumsum(steps)])
+        line = axes.plot(way, part.pressure, label=f"{name}: pressure")[0]
+        right.plot(way, part.clearance, "--", color=line.get_color(), label=f"{name}: clearance")
+    axes.set(xlabel="way along the part", ylabel="pressure")
+    right.set_ylabel("clearance")
+    drawn, others = axes.get_legend_handles_labels(), right.get_legend_handles_labels()
+    axes.legend(drawn[0] + others[0], drawn[1] + others[1])
+
+
+def _draw_history(result: Result, axes: Any) -> None:
+    history = result.history
+    for name in ("displacement_change", "clearance_change", "equilibrium", "penetration", "tension", "complementarity"):
+        column = getattr(history, name)
+        if column is not None and (column > 0).any():
+            axes.semilogy(history.iteration, column, label=name.replace("_", " "))
+    axes.set(xlabel="iteration", ylabel="relative residual")
+    axes.legend()
