@@ -28,7 +28,7 @@ class AsyncClient:
 
     def __init__(
         self,
-        url: str = "http://127.0.0.1:8080",
+        url: str | None = None,
         *,
         token: str | None = None,
         patience: float = 60.0,
@@ -114,8 +114,9 @@ def _request_bytes(endpoint: Endpoint, request: Request) -> bytes:
         "Content-Length": str(len(request.body)),
         "Connection": "close",
     }
-    lines = [f"{request.method} {endpoint.path(request)} HTTP/1.1", *(f"{name}: {text}" for name, text in headers.items())]
-    return "\r\n".join([*lines, "", ""]).encode("latin-1") + request.body
+    lines = [f"{name}: {text}" for name, text in headers.items()]
+    head = "\r\n".join([f"{request.method} {endpoint.path(request)} HTTP/1.1", *lines, "", ""])
+    return head.encode("latin-1") + request.body
 
 
 class _Received:

@@ -18,7 +18,7 @@ from .summary import Estimate
 
 
 class Client:
-    """A service at an address.
+    """A service at an address, by default that of the environment variable SIGNORINI_URL, or port 8080 of this machine.
 
     `token` is one of the service's, if it wants one; `context` is for https. A service that was reached and does not
     answer any more is tried for `patience` seconds, then ServiceUnreachable is raised; one that never answered raises
@@ -27,7 +27,7 @@ class Client:
 
     def __init__(
         self,
-        url: str = "http://127.0.0.1:8080",
+        url: str | None = None,
         *,
         token: str | None = None,
         patience: float = 60.0,
@@ -51,11 +51,12 @@ class Client:
     ) -> list[Result]:
         """Solves many problems and returns their results in the same order.
 
-        The queue of the service is kept full but for a quarter. After 503 nothing is added within `Retry-After`, after
-        a lost connection and a restart of the service all goes on, and nothing is solved twice. `progress=True` shows a
-        bar; a function is called with how many are done and how many there are. A solve that fails raises nothing here:
-        its result has the `status` `failed`, and `check()`. Ctrl-C cancels what was not fetched. Raises Refused, with the
-        `index` of the bad problem, after the others were cancelled, and ServiceUnreachable.
+        The queue of the service is filled until it is full, then kept at three quarters. After 503 nothing is added
+        within `Retry-After`; after a lost connection and a restart of the service all goes on, and nothing is solved
+        twice. `progress=True` shows a bar; a function is called with how many are done and how many there are. A solve
+        that fails raises nothing here: its result has the `status` `failed`, and `check()`. Ctrl-C cancels what was not
+        fetched. Raises Refused, with the `index` of the bad problem, after the others were cancelled, and
+        ServiceUnreachable.
         """
         tickets = questions.tickets(problems, fields)
         return self._run(conversation.solve_all(self._line(), tickets, questions.teller(progress, len(tickets))))

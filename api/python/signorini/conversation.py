@@ -163,11 +163,12 @@ class _Batch:
 
     def fetch(self) -> Conversation[None]:
         """Waits for the first result that is missing, but no longer than until more may be sent."""
-        pause = self.closed_until - self.clock() if self.waiting and len(self.on_their_way) < self.window else LONGEST_WAIT
+        has_more_to_send = self.waiting and len(self.on_their_way) < self.window
+        wait = max(self.closed_until - self.clock(), 0.0) if has_more_to_send else LONGEST_WAIT
         if self.on_their_way:
-            yield from self._fetch_within(min(max(pause, 0.0), LONGEST_WAIT))
-        elif pause > 0.0:
-            yield Pause(pause)
+            yield from self._fetch_within(min(wait, LONGEST_WAIT))
+        else:
+            yield Pause(wait)
 
     def _fetch_within(self, wait: float) -> Conversation[bool]:
         """Whether the first result that is missing came."""
@@ -182,7 +183,7 @@ class _Batch:
 
     def _read(self, ticket: Ticket, reply: Reply) -> Result | None:
         if reply.status >= 400:
-            raise reply.refusal(self.count - len(self.waiting) - len(self.on_their_way) + self.on_their_way.index(ticket))
+            raise reply.refusal(index=len(self.results) + self.on_their_way.index(ticket))
         return ticket.result(reply)
 
 

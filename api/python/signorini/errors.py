@@ -34,7 +34,13 @@ class Refused(SignoriniError):
     """
 
     def __init__(
-        self, status: int | None, type: str, title: str, detail: str, faults: tuple[Fault, ...], index: int | None = None
+        self,
+        status: int | None,
+        type: str,
+        title: str,
+        detail: str,
+        faults: tuple[Fault, ...],
+        index: int | None = None,
     ) -> None:
         self.status = status
         self.type = type

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar, Union
@@ -107,12 +108,13 @@ Conversation = Generator[Step, Event, Answer]
 
 
 class Endpoint:
-    """Where a service is, and how it is spoken to.
+    """Where a service is, and how it is spoken to; without `url` where SIGNORINI_URL says, or on this machine.
 
     Raises ValueError for an address that is none of http:// and https://.
     """
 
-    def __init__(self, url: str, token: str | None) -> None:
+    def __init__(self, url: str | None, token: str | None) -> None:
+        url = url or os.environ.get("SIGNORINI_URL") or "http://127.0.0.1:8080"
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise ValueError(f"{url!r} is no address of a service, such as http://127.0.0.1:8080")

@@ -22,7 +22,8 @@ def package(name: str, purpose: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise PackageMissing(f"{purpose} takes {name}, which is not installed: pip install {name.split('.')[0]}") from error
+        distribution = name.split(".")[0]
+        raise PackageMissing(f"{purpose} takes {distribution}, which is not installed") from error
 
 
 def to_pyvista(result: Result) -> pyvista.UnstructuredGrid:
@@ -35,7 +36,8 @@ def to_pyvista(result: Result) -> pyvista.UnstructuredGrid:
     numpy = package("numpy", "to_pyvista()")
     triangles = result.mesh.triangles
     cells = numpy.insert(triangles, 0, 3, axis=1).ravel()
-    grid = pyvista.UnstructuredGrid(cells, numpy.full(len(triangles), _VTK_TRIANGLE, "uint8"), _in_space(result.mesh.points))
+    kinds = numpy.full(len(triangles), _VTK_TRIANGLE, "uint8")
+    grid = pyvista.UnstructuredGrid(cells, kinds, _in_space(result.mesh.points))
     for name, values in _point_data(result).items():
         grid.point_data[name] = values
     for name, values in _cell_data(result).items():
