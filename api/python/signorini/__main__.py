@@ -25,7 +25,9 @@ def main() -> int:
     where.add_argument("--program", help="path of signorinid, to solve without a service")
     options = parser.parse_args()
     try:
-        return _write_figures(Local(options.program) if options.program else Client(options.service), options.directory)
+        if options.program:
+            return _write_figures(Local(options.program), options.directory)
+        return _write_figures(Client(options.service), options.directory)
     except SignoriniError as error:
         print(f"signorini: {error}", file=sys.stderr)
         return 1

@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
     from .result import Result
 
+_LABELS = {"von_mises": "von Mises stress"}
+_MOST_SHAPES = 20_000  # of a drawing; what has more triangles is drawn as an image
 _COMPONENTS = {2: ("x", "y"), 3: ("xx", "yy", "xy")}
 
 
@@ -66,9 +68,11 @@ def _draw_on_body(result: Result, field: str, values: Any, deformed: float, axes
         points = points + deformed * result.displacement.at_points
     how = {"shading": "gouraud"} if field == "displacement" else {"shading": "flat", "facecolors": values}
     arguments = [values] if field == "displacement" else []
-    drawn = axes.tripcolor(*points.T, result.mesh.triangles, *arguments, rasterized=len(points) > 20_000, **how)
-    axes.figure.colorbar(drawn, ax=axes, label=field.replace("_", " "))
+    triangles = result.mesh.triangles
+    drawn = axes.tripcolor(*points.T, triangles, *arguments, rasterized=len(triangles) > _MOST_SHAPES, **how)
     axes.set(aspect="equal", xlabel="x", ylabel="y")
+    beside = package("mpl_toolkits.axes_grid1", "plot()").make_axes_locatable(axes).append_axes("right", "4%", pad=0.1)
+    axes.figure.colorbar(drawn, cax=beside, label=_LABELS.get(field, field.replace("_", " ")))
 
 
 def _draw_contact(numpy: Any, result: Result, axes: Any) -> None:
@@ -82,7 +86,7 @@ def _draw_contact(numpy: Any, result: Result, axes: Any) -> None:
     axes.set(xlabel="way along the part", ylabel="pressure")
     right.set_ylabel("clearance")
     drawn, others = axes.get_legend_handles_labels(), right.get_legend_handles_labels()
-    axes.legend(drawn[0] + others[0], drawn[1] + others[1])
+    axes.legend(drawn[0] + others[0], drawn[1] + others[1], loc="upper right")
 
 
 def _draw_history(result: Result, axes: Any) -> None:
