@@ -22,8 +22,8 @@ def loads(document: bytes) -> Any:
     Raises CborError if the document is cut off, goes on after its end, or is none.
     """
     reader = _Reader(document)
-    value = reader.value()
-    if value is _BREAK or reader.place != len(document):
+    value = reader.element()
+    if reader.place != len(document):
         raise CborError(f"the document should end at byte {reader.place}")
     return value
 
@@ -32,6 +32,13 @@ class _Reader:
     def __init__(self, document: bytes) -> None:
         self.document = document
         self.place = 0
+
+    def element(self) -> Any:
+        """A value that is there, and no end of others."""
+        value = self.value()
+        if value is _BREAK:
+            raise CborError(f"nothing ends at byte {self.place - 1}")
+        return value
 
     def value(self) -> Any:
         initial = self.take(1)[0]
@@ -48,11 +55,11 @@ class _Reader:
         if major == 2:
             return self.take(count)
         if major == 3:
-            return str(self.take(count), "utf-8")
+            return self.text(count)
         if major == 4:
-            return [self.value() for _ in range(count)]
+            return [self.element() for _ in range(count)]
         if major == 5:
-            return {self.value(): self.value() for _ in range(count)}
+            return _members([self.element() for _ in range(2 * count)])
         return self.tagged(count)
 
     def take(self, count: int) -> bytes:
@@ -62,6 +69,12 @@ class _Reader:
         found = self.document[self.place : end]
         self.place = end
         return found
+
+    def text(self, count: int) -> str:
+        try:
+            return str(self.take(count), "utf-8")
+        except UnicodeDecodeError as error:
+            raise CborError(f"the text before byte {self.place} is no UTF-8") from error
 
     def argument(self, low: int) -> int:
         if low < 24:
@@ -87,11 +100,11 @@ class _Reader:
         while (piece := self.value()) is not _BREAK:
             pieces.append(piece)
         if major == 5:
-            if len(pieces) % 2:
-                raise CborError("a member has a name and no value")
-            return dict(zip(pieces[::2], pieces[1::2]))
+            return _members(pieces)
         if major == 4:
             return pieces
+        if any(not isinstance(piece, bytes if major == 2 else str) for piece in pieces):
+            raise CborError(f"the string before byte {self.place} has pieces that are none")
         return b"".join(pieces) if major == 2 else "".join(pieces)
 
     def tagged(self, tag: int) -> Any:
@@ -123,3 +136,9 @@ class _Reader:
         if not isinstance(data, bytes):
             raise CborError("a typed array is made of bytes")
         return data
+
+
+def _members(pieces: list[Any]) -> dict[Any, Any]:
+    if len(pieces) % 2 or any(not isinstance(name, (str, int)) for name in pieces[::2]):
+        raise CborError("the members of an object have names and values")
+    return dict(zip(pieces[::2], pieces[1::2]))

@@ -90,8 +90,8 @@ def write_figures(service: CanSolve, directory: str | pathlib.Path) -> list[path
     `solve` raises but SolveFailed.
     """
     directory = pathlib.Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
     conforming, nonconforming = CONFORMING.solve(service), NONCONFORMING.solve(service)
+    directory.mkdir(parents=True, exist_ok=True)
     drawings: dict[str, Callable[[], Any]] = {
         "6.1": lambda: draw_nodes(conforming, CONFORMING),
         "6.2": lambda: draw_solution(conforming, CONFORMING),

@@ -1,0 +1,108 @@
+"""A service without sockets and without time: it answers requests of a conversation, and its clock is a number."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from signorini.exchange import Conversation, Event, Lost, Pause, Reply, Request
+
+
+@dataclass
+class Job:
+    id: str
+    body: bytes
+    ends_at: float
+    was_cancelled: bool = False
+
+
+class PretendedService:
+    """One worker, `seconds` a solve, and a queue of `limit`; a problem that is `bad` is refused.
+
+    Of all requests the share `lost` has no reply, half of these after they have arrived.
+    """
+
+    def __init__(self, *, limit: int = 64, seconds: float = 0.01, lost: float = 0.0, seed: int = 0) -> None:
+        self.limit = limit
+        self.seconds = seconds
+        self.lost = lost
+        self.luck = random.Random(seed)
+        self.now = 0.0
+        self.jobs: dict[str, Job] = {}  # by key
+        self.refused_at: list[float] = []
+        self.accepted_at: list[float] = []
+        self.requests: list[Request] = []
+        self.is_up = True
+        self.retry_after = 5
+        self.prepared: list[Reply] = []  # replies that are given before its own
+
+    def clock(self) -> float:
+        return self.now
+
+    def unfinished(self) -> list[Job]:
+        return [job for job in self.jobs.values() if job.ends_at > self.now and not job.was_cancelled]
+
+    def do(self, step: Request | Pause) -> Event:
+        if isinstance(step, Pause):
+            self.now += step.seconds
+            return None
+        self.requests.append(step)
+        self.now += 0.001
+        if not self.is_up:
+            return Lost("nobody listens", sent=False)
+        if self.luck.random() < self.lost:
+            if self.luck.random() < 0.5:
+                self.answer(step)
+            return Lost("the line was cut", sent=True)
+        return self.answer(step)
+
+    def answer(self, request: Request) -> Reply:
+        if self.prepared:
+            return self.prepared.pop(0)
+        if request.method == "DELETE":
+            job = next(job for job in self.jobs.values() if request.path.endswith("/" + job.id))
+            job.was_cancelled = True
+            return reply(202, {"id": job.id, "status": "cancelled"})
+        key = request.headers["Idempotency-Key"]
+        if key not in self.jobs:
+            if b"bad" in request.body:
+                return reply(422, {"title": "A bad problem", "detail": "It is bad.", "type": "urn:bad"})
+            if len(self.unfinished()) > self.limit:
+                self.refused_at.append(self.now)
+                return reply(503, {"title": "full"}, {"retry-after": str(self.retry_after)})
+            self.accepted_at.append(self.now)
+            begins = max([self.now, *(job.ends_at for job in self.jobs.values())])
+            self.jobs[key] = Job(f"JOB{len(self.jobs)}", request.body, begins + self.seconds)
+        job = self.jobs[key]
+        wait = float(parse_qs(urlsplit(request.path).query)["wait"][0])
+        if job.ends_at > self.now + wait:
+            self.now += wait
+            return reply(202, {"id": job.id, "status": "queued"})
+        self.now = max(self.now, job.ends_at)
+        return reply(200, {"id": job.id, "status": "succeeded", "problem": json.loads(job.body)})
+
+
+def reply(status: int, document: dict[str, Any], headers: dict[str, str] | None = None) -> Reply:
+    return Reply(status, {"content-type": "application/json", **(headers or {})}, json.dumps(document).encode())
+
+
+def drive(
+    talk: Conversation[Any], service: PretendedService, before: Callable[[Request | Pause], None] = lambda step: None
+) -> Any:
+    """What the conversation with the service comes to; `before` sees every step, and may raise."""
+    try:
+        step = next(talk)
+        while True:
+            try:
+                before(step)
+                event = service.do(step)
+            except BaseException as interruption:
+                step = talk.throw(interruption)
+            else:
+                step = talk.send(event)
+    except StopIteration as end:
+        return end.value
