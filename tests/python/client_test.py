@@ -150,6 +150,14 @@ class Solves(WithDaemon):
         self.assertEqual([row["triangles"] for row in table.rows], [16, 64])
         self.assertEqual(table.rates[0]["scheme"], "conforming")
 
+    def test_a_sweep_of_which_an_entry_fails_says_why(self) -> None:
+        lifted = Variation(boundary={"top": {"pressure": -1}})
+        for way, solve in every_way(self).items():
+            with self.subTest(way), self.assertRaises(SolveFailed) as caught:
+                solve(dataclasses.replace(block(), sweep=[Variation(), lifted]))
+            self.assertRegex(str(caught.exception), "sweep/1|free|held|lift|rest", way)
+            self.assertEqual([entry.status for entry in caught.exception.result.sweep], ["succeeded", "failed"])
+
     def test_every_example_is_solved(self) -> None:
         for name in self.client.examples():
             self.assertEqual(self.client.solve(self.client.example(name), fields=[]).status, "succeeded", name)

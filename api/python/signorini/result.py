@@ -48,7 +48,9 @@ class Result:
         if self.status == "succeeded":
             return None
         error, summary = self.document.get("error") or {}, self.document.get("summary") or {}
-        return str(error.get("detail") or summary.get("advice") or self.status)
+        rows = [*self.document.get("sweep", []), *self.document.get("study", {}).get("rows", [])]
+        of_rows = next((row["error"] for row in rows if "error" in row), None)
+        return str(error.get("detail") or summary.get("advice") or of_rows or self.status)
 
     def check(self) -> Result:
         """This result. Raises SolveFailed if the solve did not succeed."""
