@@ -83,6 +83,11 @@ class Package(unittest.TestCase):
             ],
         )
 
+    def test_the_command_names_the_package_that_figures_take(self) -> None:
+        ended = self.python("-m", "signorini", "figures", "nowhere")
+        self.assertEqual(ended.stderr, "signorini: figures takes matplotlib, which is not installed\n")
+        self.assertEqual(ended.returncode, 1)
+
     def mypy(self, *arguments: str, cwd: pathlib.Path) -> subprocess.CompletedProcess[str]:
         command = [sys.executable, "-m", "mypy", "--config-file", str(SOURCE / "pyproject.toml")]
         environment = os.environ | {"MYPYPATH": f"{self.installed}:{TREE / 'tests/python'}"}

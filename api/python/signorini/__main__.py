@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from .client import Client
 from .errors import SignoriniError
+from .export import package
 from .local import Local
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ def main() -> int:
 
 
 def _write_figures(service: CanSolve, directory: str) -> int:
-    from .figures import write_figures  # which takes NumPy
+    package("matplotlib", "figures")
+    from .figures import write_figures  # which takes NumPy, as matplotlib does
 
     for path in write_figures(service, directory):
         print(path)
