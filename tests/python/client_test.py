@@ -231,7 +231,10 @@ class Twins(WithDaemon):
                 await task
 
         long = block(divisions=(300, 150))
-        calls: list[Callable[[AsyncClient], Any]] = [lambda twin: twin.solve(long), lambda twin: twin.map([long] * 10)]
+        calls: list[Callable[[AsyncClient], Any]] = [
+            lambda twin: twin.solve(long),
+            lambda twin: twin.map([long] * 10),
+        ]
         for call in calls:
             asyncio.run(cancel(call))
             self.expect_rest()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 import uuid
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 from urllib.parse import urlencode
 
@@ -187,7 +187,7 @@ class _Batch:
         return ticket.result(reply)
 
 
-def _cancel(tickets: Sequence[Ticket] | deque[Ticket], error: BaseException) -> Conversation[None]:
+def _cancel(tickets: Iterable[Ticket], error: BaseException) -> Conversation[None]:
     """Cancels what the service may have of these, without patience; the error says why."""
     if isinstance(error, ServiceUnreachable):
         return
