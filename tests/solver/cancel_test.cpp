@@ -127,7 +127,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
           {solves(strip(1500, 4, Scheme::conforming), {ActiveSet{}, {}}), 8},
           {solves(paper, {}, std::vector<Variation>(100, lower)), 3},
           {[study](Observer& observer) {
-             run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, {}}, observer, 0);
+             run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, {}}, observer);
            },
            4},
           {solves(adaptive), 4},
@@ -191,6 +191,18 @@ TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
     }
     EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << i;
   }
+}
+
+/// The data of a triangle may take a tenth of a millisecond: so many triangles are within a quarter of a
+/// second.
+TEST(Cancel, IsHeardWithinAThousandTriangles) {
+  struct Counting : Observer {
+    int asked = 0;
+    bool keep_going() override { return ++asked > 0; }
+  } observer;
+  Progress progress(observer, {});
+  for (int t = 1; t <= 1000; ++t) progress.check_in(t);
+  EXPECT_GE(observer.asked, 1);
 }
 
 }  // namespace
