@@ -19,7 +19,7 @@ void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, O
                 const Progress& whole, Solution& solution, const SolveOne& solve_one) {
   SilentObserver within(observer);
   for (const Variation& variation : sweep) {
-    Progress progress(within, settings.time_limit, whole.seconds());
+    Progress progress(within, settings.time_limit, settings.spent + whole.seconds());
     SweepEntry entry;
     try {
       entry = solve_one(variation, progress);
@@ -76,7 +76,7 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
 
 Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
                Observer& observer, OperatorCache* cache) {
-  Progress progress(observer, settings.time_limit);
+  Progress progress(observer, settings.time_limit, settings.spent);
   const MemoryMeter memory;
   progress.enter(Phase::mesh);
   constexpr double all = std::numeric_limits<double>::infinity();

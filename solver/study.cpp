@@ -98,9 +98,8 @@ class Run : public Observer {
   double aside_ = 0;  ///< seconds that the true errors took
 };
 
-/// What is left of the time for the whole.
-Settings with_time_left(Settings settings, double spent) {
-  if (settings.time_limit) *settings.time_limit -= spent;
+Settings after(double seconds, Settings settings) {
+  settings.spent += seconds;
   return settings;
 }
 
@@ -118,20 +117,20 @@ std::optional<Measured> measured(const StudyRow& row, const Quantity& quantity) 
 }  // namespace
 
 std::vector<StudyRow> run_study(const Problem& problem, const Study& study, const Settings& settings,
-                                Observer& observer, double spent) {
+                                Observer& observer) {
   const Stopwatch watch;
   const std::size_t count = study.schemes.size() * study.meshes.size();
   std::size_t done = 0;
   std::vector<StudyRow> rows;
   for (const Scheme scheme : study.schemes)
     for (const StudyMesh& mesh : study.meshes) {
-      const Settings left = with_time_left(settings, spent + watch.seconds());
-      if (left.time_limit && *left.time_limit <= 0)
+      const Settings now = after(watch.seconds(), settings);
+      if (now.time_limit && *now.time_limit <= now.spent)
         rows.push_back(failed_row(scheme, mesh,
                                   "the time limit for the whole study was reached before: raise "
                                   "solver.time_limit"));
       else
-        Run(run_of(problem, mesh, scheme), study.exact, observer).add_to(rows, mesh, left);
+        Run(run_of(problem, mesh, scheme), study.exact, observer).add_to(rows, mesh, now);
       observer.studied(++done, count);
     }
   return rows;

@@ -12,9 +12,9 @@ namespace signorini {
 /// the rows compare.
 ///
 /// A run that cannot be solved gives a row that says why and does not end the others. The time limit is for
-/// the whole; `spent` are seconds of it that are over. Throws Cancelled.
+/// the whole. Throws Cancelled.
 std::vector<StudyRow> run_study(const Problem& problem, const Study& study, const Settings& settings,
-                                Observer& observer, double spent);
+                                Observer& observer);
 
 /// A column of a study's table: its number in a row, if there is one.
 using Quantity = std::function<std::optional<double>(const StudyRow&)>;

@@ -1,6 +1,7 @@
 #include "server/jobs/run.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -71,9 +72,11 @@ ProblemDetails incomplete(const std::vector<SweepEntry>& sweep) {
 Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators) {
   const MemoryMeter memory;
   Solution solution = solve(request.problem, request.sweep, request.settings, observer, operators);
-  if (request.study && observer.keep_going())
-    solution.study = run_study(request.problem, *request.study, request.settings, observer,
-                               solution.summary.timings.total);
+  if (request.study && observer.keep_going()) {
+    Settings after_it = request.settings;
+    after_it.spent += solution.summary.timings.total;
+    solution.study = run_study(request.problem, *request.study, after_it, observer);
+  }
   solution.summary.peak_memory_bytes = memory.peak();
   return solution;
 }
@@ -100,7 +103,9 @@ Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, doub
   if (!claim.problem) return damaged_ending("problem");
   try {
     const MemoryLimit limit(max_memory);
-    const api::Request request = api::parse_request(*claim.problem, &live);
+    const auto begin = std::chrono::steady_clock::now();
+    api::Request request = api::parse_request(*claim.problem, &live);
+    request.settings.spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return ending_of(solve(request, live));
   } catch (const Cancelled&) {
     Ending ending = failed(std::current_exception(), live);

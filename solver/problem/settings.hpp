@@ -31,6 +31,7 @@ using Method = std::variant<AcceleratedUzawa, PaperUzawa, ActiveSet>;
 struct Settings {
   Method method = AcceleratedUzawa{};
   std::optional<double> time_limit;  ///< seconds for the whole solve
+  double spent = 0;  ///< seconds that count for the limit, but were before the solve: reading the problem
 };
 
 }  // namespace signorini

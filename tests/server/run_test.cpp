@@ -62,5 +62,23 @@ TEST(Run, LeavesNoLimitBehind) {
   EXPECT_NO_THROW(std::vector<char>(100'000'000));
 }
 
+/// A limit that reading the problem has used up leaves nothing for the solve.
+TEST(Run, ReadingCountsForTheTimeLimit) {
+  double spent = 0;
+  run_within(1e9, [&](const api::Request& request, Observer&) {
+    spent = request.settings.spent;
+    return Solution{};
+  });
+  EXPECT_GT(spent, 0);
+
+  api::Request request = api::parse_request(paper_problem(8).dump());
+  request.settings.time_limit = 5;
+  request.settings.spent = 6;
+  Observer indifferent;
+  EXPECT_THROW(solve_alone(request, indifferent), TimeUp);
+  request.settings.spent = 0;
+  EXPECT_NO_THROW(solve_alone(request, indifferent));
+}
+
 }  // namespace
 }  // namespace signorini::server::run_test

@@ -22,7 +22,7 @@ std::vector<StudyMesh> squares(const std::vector<Divisions>& divisions) {
 
 std::vector<StudyRow> run(const Problem& problem, const Study& study, const Settings& settings = active_set) {
   Observer indifferent;
-  return run_study(problem, study, settings, indifferent, 0);
+  return run_study(problem, study, settings, indifferent);
 }
 
 std::optional<double> bound_of(const StudyRow& row) {
@@ -226,7 +226,7 @@ TEST(Study, TheTimeLimitIsForTheWhole) {
   const Study study{{Scheme::nonconforming}, squares({{4, 4}, {4, 4}}), {}};
   Observer indifferent;
   const std::vector<StudyRow> rows =
-      run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, 5.}, indifferent, 6);
+      run_study(problems::paper(Scheme::conforming, 4), study, {ActiveSet{}, 5., 6.}, indifferent);
   ASSERT_EQ(rows.size(), 2u);
   for (const StudyRow& row : rows) EXPECT_NE(row.error.find("time limit"), std::string::npos);
 }
@@ -238,7 +238,7 @@ TEST(Study, CountsItsRunsAndEndsWhenItIsAskedTo) {
     void studied(std::size_t now, std::size_t all) override { done = now, count = all; }
   } counting;
   const Study study{both, squares({{4, 4}, {8, 8}}), {}};
-  EXPECT_THROW(run_study(problems::paper(Scheme::conforming, 4), study, active_set, counting, 0), Cancelled);
+  EXPECT_THROW(run_study(problems::paper(Scheme::conforming, 4), study, active_set, counting), Cancelled);
   EXPECT_EQ(counting.done, 2u);
   EXPECT_EQ(counting.count, 4u);
 }
