@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "api/piece_writer.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 /// Tables for spreadsheets as RFC 4180 has them: UTF-8, a header line, lines that end with CR LF, numbers
 /// by shortest round trip with a decimal point. They return false if the sink ended it.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini::api {
 

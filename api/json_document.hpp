@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "observer.hpp"
+#include "progress/observer.hpp"
 
 namespace signorini::api {
 

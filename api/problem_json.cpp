@@ -4,7 +4,7 @@
 #include "api/limits.hpp"
 #include "api/operator_key.hpp"
 #include "api/problem_members.hpp"
-#include "data_check.hpp"
+#include "run/data_check.hpp"
 #include "solve.hpp"
 
 namespace signorini::api {

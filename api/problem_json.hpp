@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "observer.hpp"
 #include "problem/problem.hpp"
 #include "problem/settings.hpp"
 #include "problem/study.hpp"
+#include "progress/observer.hpp"
 
 namespace signorini::api {
 

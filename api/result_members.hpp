@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "api/document_writer.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 /// The members of a result document (api/README.md, "A result"), each written by one function as a value.
 namespace signorini::api {

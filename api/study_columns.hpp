@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "study.hpp"
+#include "run/study.hpp"
 
 namespace signorini::api {
 

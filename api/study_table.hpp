@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "api/piece_writer.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini::api {
 

@@ -2,13 +2,13 @@
 
 #include <limits>
 
-#include "adapt.hpp"
-#include "condensed_problem.hpp"
-#include "data_check.hpp"
-#include "memory_meter.hpp"
-#include "paper_form.hpp"
-#include "requested_mesh.hpp"
-#include "sweep.hpp"
+#include "progress/memory_meter.hpp"
+#include "run/adapt.hpp"
+#include "run/condensed_problem.hpp"
+#include "run/data_check.hpp"
+#include "run/paper_form.hpp"
+#include "run/requested_mesh.hpp"
+#include "run/sweep.hpp"
 
 namespace signorini {
 namespace {

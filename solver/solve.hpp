@@ -3,11 +3,11 @@
 #include <limits>
 
 #include "contact/operator.hpp"
-#include "observer.hpp"
 #include "problem/problem.hpp"
 #include "problem/settings.hpp"
 #include "problem/study.hpp"
-#include "solution.hpp"
+#include "progress/observer.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "api/piece_writer.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini::api {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "api/piece_writer.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini::api {
 

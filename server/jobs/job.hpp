@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "result/solution.hpp"
 #include "server/jobs/share.hpp"
 #include "server/problem_details.hpp"
-#include "solution.hpp"
 
 namespace signorini::server {
 

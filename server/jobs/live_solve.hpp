@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "observer.hpp"
+#include "progress/observer.hpp"
 #include "server/jobs/job.hpp"
 
 namespace signorini::server {

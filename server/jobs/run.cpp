@@ -5,10 +5,10 @@
 #include <cmath>
 #include <functional>
 
-#include "memory_meter.hpp"
+#include "progress/memory_meter.hpp"
+#include "run/study.hpp"
 #include "server/failure.hpp"
 #include "solve.hpp"
-#include "study.hpp"
 
 namespace signorini::server {
 namespace {

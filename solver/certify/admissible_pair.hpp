@@ -1,8 +1,8 @@
 #pragma once
 
-#include "certify/admissible_displacement.hpp"
-#include "certify/balance_potential.hpp"
-#include "certify/contact_pressure.hpp"
+#include "certify/displacement/admissible_displacement.hpp"
+#include "certify/membrane/balance_potential.hpp"
+#include "certify/pressure/contact_pressure.hpp"
 
 namespace signorini {
 

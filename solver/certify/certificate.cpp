@@ -5,16 +5,16 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "certify/carried_loads.hpp"
+#include "certify/data/carried_loads.hpp"
+#include "certify/data/lost_digits.hpp"
+#include "certify/displacement/relaxation.hpp"
+#include "certify/elasticity/least_airy.hpp"
+#include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/energy_norm.hpp"
 #include "certify/gap_estimate.hpp"
-#include "certify/least_airy.hpp"
-#include "certify/least_potential.hpp"
-#include "certify/lost_digits.hpp"
-#include "certify/patch_pairs.hpp"
-#include "certify/relaxation.hpp"
+#include "certify/membrane/least_potential.hpp"
+#include "certify/patches/patch_pairs.hpp"
 #include "certify/totals.hpp"
-#include "certify/traction_relaxation.hpp"
 
 namespace signorini {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "fem/discretization.hpp"
-#include "progress.hpp"
-#include "solution.hpp"
+#include "progress/progress.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "certify/law_pieces.hpp"
+#include "certify/data/law_pieces.hpp"
 #include "fem/discretization.hpp"
 
 namespace signorini {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "certify/admissible_displacement.hpp"
+#include "certify/displacement/admissible_displacement.hpp"
 
 namespace signorini {
 

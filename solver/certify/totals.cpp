@@ -4,17 +4,17 @@
 #include <cmath>
 #include <optional>
 
-#include "certify/oscillation.hpp"
+#include "certify/data/oscillation.hpp"
 #include "fem/edge_pieces.hpp"
 
 namespace signorini {
 namespace {
 
 /// What g − p may be in the mean, relative to v.
-constexpr double kTolerance = 1e-10;
+constexpr double kMeanTolerance = 1e-10;
 
 /// Of all edges, and of all triangles in which a load jumps.
-constexpr int kCellsOfGaps = 20'000, kCellsOfJumps = 20'000;
+constexpr int kCellsOfContact = 20'000, kCellsOfJumps = 20'000;
 
 /// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its
 /// enclosure allows, the same in all of them; 0 where that is not known to be finite, which
@@ -29,7 +29,7 @@ class ContactTerms {
     const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
                         std::abs(v.along_contact(contact_, 1));
     pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge),
-                             kTolerance * size, budget);
+                             kMeanTolerance * size, budget);
     const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
     if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
   }
@@ -87,7 +87,7 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     balanced_correction += of_correction;
     shares[owners[t]] += of_gap + of_correction + own.skew;
   }
-  CellBudget budget{kCellsOfGaps, &progress};
+  CellBudget budget{kCellsOfContact, &progress};
   const int edges = static_cast<int>(problem.clearance.edges.size());
   for (int i = 0; i < edges; ++i) {
     const int owner = owners[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]];

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "certify/admissible_pair.hpp"
-#include "certify/edge_tractions.hpp"
-#include "certify/law_pieces.hpp"
-#include "certify/macro_values.hpp"
-#include "certify/patch_pairs.hpp"
-#include "certify/quadratic_balance.hpp"
+#include "certify/data/law_pieces.hpp"
+#include "certify/elasticity/edge_tractions.hpp"
+#include "certify/elasticity/macro_values.hpp"
+#include "certify/membrane/quadratic_balance.hpp"
+#include "certify/patches/patch_pairs.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
 

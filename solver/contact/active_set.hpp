@@ -2,8 +2,8 @@
 
 #include "contact/contact_complement.hpp"
 #include "problem/settings.hpp"
-#include "progress.hpp"
-#include "solution.hpp"
+#include "progress/progress.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

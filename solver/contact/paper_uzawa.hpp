@@ -4,8 +4,8 @@
 
 #include "fem/discretization.hpp"
 #include "problem/settings.hpp"
-#include "progress.hpp"
-#include "solution.hpp"
+#include "progress/progress.hpp"
+#include "result/solution.hpp"
 #include "system/cholesky.hpp"
 
 namespace signorini {

@@ -18,7 +18,7 @@ double relative(double value, double scale) {
 /// Displacements below this part of the clearances are rounding.
 constexpr double kSmall = 1e-12;
 
-double largest(const Eigen::VectorXd& values) {
+double largest_entry(const Eigen::VectorXd& values) {
   return values.size() > 0 ? values.lpNorm<Eigen::Infinity>() : 0;
 }
 
@@ -26,7 +26,7 @@ double largest(const Eigen::VectorXd& values) {
 class StressNorm {
  public:
   explicit StressNorm(const Eigen::VectorXd& clearance)
-      : clearance_(largest(clearance)), largest_term_(kSmall * clearance_) {}
+      : clearance_(largest_entry(clearance)), largest_term_(kSmall * clearance_) {}
 
   /// `strain` is M σ and `rise` Bᵀ u, the terms of the first equation.
   void add(const LocalMatrix& compliance, const LocalMatrix& stress_mass, const LocalVector& sigma,

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "fem/discretization.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

@@ -8,7 +8,7 @@
 #include "contact/cone.hpp"
 #include "fem/rigid_frame.hpp"
 #include "mesh/bodies.hpp"
-#include "observer.hpp"
+#include "progress/observer.hpp"
 
 namespace signorini {
 namespace {

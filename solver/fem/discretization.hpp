@@ -8,7 +8,7 @@
 #include "fem/trace_space.hpp"
 #include "fem/traction_field.hpp"
 #include "mesh/mesh.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

@@ -4,7 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "problem/problem.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

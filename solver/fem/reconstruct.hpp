@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/scheme.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

@@ -39,9 +39,9 @@ std::vector<Part> parts_of(const Condition& condition, int components, const Vec
 }
 
 /// A scalar on an edge in the points of Gauss on each of some pieces, with what the sums are off by.
-class Projection {
+class EdgeProjection {
  public:
-  Projection(const Field& field, const EdgeLine& edge, double largest, CellBudget& budget)
+  EdgeProjection(const Field& field, const EdgeLine& edge, double largest, CellBudget& budget)
       : field_(field), edge_(edge), largest_(largest) {
     if (field.formula())
       cut(budget);
@@ -189,7 +189,7 @@ TractionField::TractionField(const Problem& problem, const Mesh& mesh, Progress*
       double rest_square = 0;
       budget.share(left--, [&](CellBudget& of_edge) {
         for (const Part& own : parts_of(condition, d, line.normal)) {
-          const Projection projection(own.field, line, largest, of_edge);
+          const EdgeProjection projection(own.field, line, largest, of_edge);
           const double rest = projection.rest();
           projected.balanced += own.vector * projection.nodes.transpose();
           projected.uncertain_force += length * projection.force;

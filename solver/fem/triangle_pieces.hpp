@@ -6,7 +6,7 @@
 #include "formula/series.hpp"
 #include "formula/taylor_model.hpp"
 #include "problem/field.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

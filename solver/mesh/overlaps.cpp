@@ -7,7 +7,7 @@
 #include "mesh/fault_list.hpp"
 #include "mesh/meeting_boxes.hpp"
 #include "mesh/segments.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

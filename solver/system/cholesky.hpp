@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 #include "system/dissection.hpp"
 
 namespace signorini {

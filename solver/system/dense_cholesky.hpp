@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

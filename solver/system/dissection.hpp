@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 #include "system/element_sum.hpp"
 
 namespace signorini {

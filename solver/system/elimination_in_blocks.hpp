@@ -4,7 +4,7 @@
 
 #include <cblas.h>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 #include "system/symmetric_update.hpp"
 
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);

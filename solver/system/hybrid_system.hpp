@@ -1,7 +1,7 @@
 #pragma once
 
 #include "fem/discretization.hpp"
-#include "progress.hpp"
+#include "progress/progress.hpp"
 #include "system/element_sum.hpp"
 
 namespace signorini {

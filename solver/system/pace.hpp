@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

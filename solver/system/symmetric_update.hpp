@@ -1,6 +1,6 @@
 #pragma once
 
-#include "progress.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini::server {
 

@@ -7,7 +7,7 @@
 #include "api/examples.hpp"
 #include "api/result_document.hpp"
 #include "api/vtu.hpp"
-#include "memory_meter.hpp"
+#include "progress/memory_meter.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/run.hpp"
 #include "solution_members.hpp"

@@ -1,4 +1,4 @@
-#include "certify/admissible_minimum.hpp"
+#include "certify/pressure/admissible_minimum.hpp"
 
 #include <gtest/gtest.h>
 

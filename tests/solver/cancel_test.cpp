@@ -10,8 +10,8 @@
 #include "problems/families.hpp"
 #include "problems/membrane.hpp"
 #include "problems/seconds_at_work.hpp"
+#include "run/study.hpp"
 #include "server/long_tests.hpp"
-#include "study.hpp"
 
 namespace signorini::cancel_test {
 namespace {

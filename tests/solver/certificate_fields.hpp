@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "certify/admissible_pair.hpp"
-#include "certify/least_potential.hpp"
-#include "certify/relaxation.hpp"
+#include "certify/displacement/relaxation.hpp"
+#include "certify/membrane/least_potential.hpp"
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
 #include "problems/membrane.hpp"
-#include "summarize.hpp"
+#include "result/summarize.hpp"
 #include "system/hybrid_system.hpp"
 #include "system/recovery.hpp"
 

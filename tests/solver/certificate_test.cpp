@@ -10,8 +10,8 @@
 #include <Eigen/LU>
 
 #include "certificate_fields.hpp"
-#include "certify/balance_potential.hpp"
-#include "certify/quadratic_balance.hpp"
+#include "certify/membrane/balance_potential.hpp"
+#include "certify/membrane/quadratic_balance.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"

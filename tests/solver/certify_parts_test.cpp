@@ -5,18 +5,18 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "certify/carried_loads.hpp"
-#include "certify/edge_tractions.hpp"
-#include "certify/least_airy.hpp"
-#include "certify/lift.hpp"
+#include "certify/data/carried_loads.hpp"
+#include "certify/displacement/lift.hpp"
+#include "certify/elasticity/edge_tractions.hpp"
+#include "certify/elasticity/least_airy.hpp"
+#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/local_fields.hpp"
-#include "certify/macro_element.hpp"
-#include "certify/quadratic_balance.hpp"
-#include "certify/traction_relaxation.hpp"
+#include "certify/membrane/quadratic_balance.hpp"
 #include "fem/lagrange.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
-#include "requested_mesh.hpp"
+#include "run/requested_mesh.hpp"
 #include "solved_problem.hpp"
 
 namespace signorini::certify_parts_test {

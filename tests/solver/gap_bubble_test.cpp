@@ -1,5 +1,5 @@
 // Displacements that exceed a gap, and what is taken off them.
-#include "certify/gap_bubble.hpp"
+#include "certify/displacement/gap_bubble.hpp"
 
 #include <random>
 

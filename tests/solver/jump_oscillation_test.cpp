@@ -1,4 +1,4 @@
-#include "certify/jump_oscillation.hpp"
+#include "certify/data/jump_oscillation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 
-#include "certify/linear_remainder.hpp"
+#include "certify/data/linear_remainder.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
 #include "mesh/refine.hpp"

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "certificate_fields.hpp"
-#include "certify/law_pieces.hpp"
+#include "certify/data/law_pieces.hpp"
 #include "certify/triangle_sums.hpp"
 #include "fem/quadrature.hpp"
 #include "mesh/rectangle.hpp"
 #include "problems/membrane.hpp"
-#include "requested_mesh.hpp"
+#include "run/requested_mesh.hpp"
 
 namespace signorini::law_pieces_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "certify/linear_remainder.hpp"
+#include "certify/data/linear_remainder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "certify/local_equilibrium.hpp"
+#include "certify/data/local_equilibrium.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
 #include "mesh/refine.hpp"

@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 
-#include "memory_meter.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
+#include "progress/memory_meter.hpp"
 
 namespace signorini::memory_test {
 namespace {

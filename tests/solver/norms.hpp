@@ -7,7 +7,7 @@
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
 #include "fem/scheme.hpp"
-#include "solution.hpp"
+#include "result/solution.hpp"
 
 namespace signorini {
 

@@ -3,8 +3,8 @@
 
 #include "certify/energy_norm.hpp"
 #include "problems/membrane.hpp"
+#include "result/true_errors.hpp"
 #include "solve.hpp"
-#include "true_errors.hpp"
 
 namespace signorini::paper_form_bound_test {
 namespace {

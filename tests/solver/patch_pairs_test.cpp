@@ -1,4 +1,4 @@
-#include "certify/patch_pairs.hpp"
+#include "certify/patches/patch_pairs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,14 +5,14 @@
 
 #include <Eigen/Cholesky>
 
-#include "certify/macro_data.hpp"
-#include "certify/macro_values.hpp"
-#include "certify/star_relaxation.hpp"
-#include "certify/traction_relaxation.hpp"
+#include "certify/displacement/star_relaxation.hpp"
+#include "certify/elasticity/macro_data.hpp"
+#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/triangle_sums.hpp"
 #include "mesh/rectangle.hpp"
 #include "problems/families.hpp"
-#include "requested_mesh.hpp"
+#include "run/requested_mesh.hpp"
 #include "solved_problem.hpp"
 
 namespace signorini::star_relaxation_test {

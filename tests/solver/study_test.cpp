@@ -1,11 +1,11 @@
 // Convergence studies: the table, the true errors in it and the rates observed.
-#include "study.hpp"
+#include "run/study.hpp"
 
 #include <gtest/gtest.h>
 
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
-#include "true_errors.hpp"
+#include "result/true_errors.hpp"
 
 namespace signorini::study_test {
 namespace {

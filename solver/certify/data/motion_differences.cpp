@@ -1,0 +1,210 @@
+#include "certify/data/motion_differences.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "certify/data/linear_remainder.hpp"
+#include "fem/couple.hpp"
+#include "system/cholesky.hpp"
+
+namespace signorini {
+namespace {
+
+/// So many steps find the least quotient within some per cent; less than it is proved by a factorisation.
+constexpr int kMotionSteps = 12;
+constexpr double kBelow = 0.9;
+constexpr int kMostTries = 12;
+
+/// The motions of triangles: a + b ẑ × (x − x_T) / ρ_T, |x − x_T| ≤ ρ_T, or a constant of a membrane.
+template <int D>
+class Motions {
+ public:
+  static constexpr int kOwn = D == 1 ? 1 : 3;
+
+  Motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads, std::optional<int> held)
+      : problem_(problem), mesh_(problem.mesh), laws_(laws), loads_(loads), held_(held) {
+    for (int t = 0; t < problem.triangles(); ++t) remainders_.push_back(motion_remainder<D>(mesh_.corners(t)));
+    for (const BoundaryPart& part : mesh_.boundary)
+      if (condition_on<Fixed>(problem.problem, part.name))
+        for (const int edge : part.edges) is_fixed_[edge] = true;
+  }
+
+  double bound(Progress& progress) const {
+    double forces = 0, beyond_square = 0;
+    for (int t = 0; t < problem_.triangles(); ++t) {
+      forces += force_on(t);
+      beyond_square += std::pow(beyond_motion(t), 2);
+    }
+    if (forces == 0) return 0;
+    const double least = least_quotient(progress);
+    return std::sqrt(beyond_square) +
+           (least > 0 ? std::sqrt(forces / least) : std::numeric_limits<double>::infinity());
+  }
+
+ private:
+  double force_on(int t) const {
+    const auto& on_edges = loads_.on_edges[t];
+    return loads_.on_triangles[t] + on_edges[0] + on_edges[1] + on_edges[2];
+  }
+
+  /// Linear functions on a triangle have max |φ| ≤ 3 ‖φ‖ / √|T|, on an edge 2 ‖φ‖ / √|e|.
+  double beyond_motion(int t) const {
+    const MotionRemainder& remainder = remainders_[t];
+    double sum = 3 * loads_.on_triangles[t] * remainder.on_triangle / std::sqrt(area(t));
+    for (int e = 0; e < 3; ++e)
+      sum += 2 * loads_.on_edges[t][e] * remainder.on_edges[e] / std::sqrt(mesh_.length(mesh_.triangle_edges[t][e]));
+    return sum * std::sqrt(laws_.whole(t).softest);
+  }
+
+  double area(int t) const { return AffineMap(mesh_.corners(t)).determinant / 2; }
+
+  double reach(int t) const {
+    double most = 0;
+    for (const Point& corner : mesh_.corners(t)) most = std::max(most, (corner - mesh_.centroid(t)).norm());
+    return most;
+  }
+
+  bool counts(int edge) const { return mesh_.edge_triangles[edge][1] >= 0 || is_fixed_[edge]; }
+
+  /// What the motion of a triangle is at a point.
+  Eigen::Matrix<double, D, kOwn> motion_at(int t, const Point& x) const {
+    Eigen::Matrix<double, D, kOwn> motion;
+    if constexpr (D == 1)
+      motion.setOnes();
+    else
+      motion << Eigen::Matrix2d::Identity(), turned_left(x - mesh_.centroid(t)) / reach(t);
+    return motion;
+  }
+
+  /// max_T |R_T v|² is at most a sum of squares of its numbers: |a + b|² ≤ 5/4 |a|² + 5 |b|².
+  static Eigen::Matrix<double, kOwn, 1> largest_square() {
+    Eigen::Matrix<double, kOwn, 1> factors;
+    if constexpr (D == 1)
+      factors.setOnes();
+    else
+      factors << 1.25, 1.25, 5;
+    return factors;
+  }
+
+  using OfPair = Eigen::Matrix<double, 2 * kOwn, 2 * kOwn>;
+
+  /// The numbers of a triangle's motion are those from here on; -1 of one that is held.
+  int first(int t) const {
+    if (t < 0 || t == held_) return -1;
+    return kOwn * (held_ && t > *held_ ? t - 1 : t);
+  }
+
+  int size() const { return kOwn * (problem_.triangles() - (held_ ? 1 : 0)); }
+
+  /// Σ_e ‖R_T v − R_T' v‖²_e / w_e − shift Σ F_T max |R_T v|².
+  ElementSum quotient(double shift) const {
+    ElementSum sum;
+    sum.size = size();
+    sum.per_element = 2 * kOwn;
+    for (int edge = 0; edge < static_cast<int>(mesh_.edges.size()); ++edge)
+      if (counts(edge)) add(sum, mesh_.edge_triangles[edge], of_edge(edge), middle(edge));
+    for (int t = 0; shift > 0 && t < problem_.triangles(); ++t) {
+      if (force_on(t) == 0 || first(t) < 0) continue;
+      OfPair own = OfPair::Zero();
+      own.diagonal().template head<kOwn>() = -shift * force_on(t) * largest_square();
+      add(sum, {t, -1}, own, mesh_.centroid(t));
+    }
+    return sum;
+  }
+
+  void add(ElementSum& sum, const std::array<int, 2>& triangles, const OfPair& matrix, const Point& centre) const {
+    for (const int t : triangles)
+      for (int k = 0; k < kOwn; ++k) sum.unknowns.push_back(first(t) < 0 ? -1 : first(t) + k);
+    sum.matrix_of.push_back(static_cast<int>(sum.matrix_of.size()));
+    sum.matrices.insert(sum.matrices.end(), matrix.data(), matrix.data() + matrix.size());
+    sum.centres.push_back(centre);
+  }
+
+  /// ‖R_T v − R_T' v‖²_e / w_e.
+  OfPair of_edge(int edge) const {
+    const auto& [one, other] = mesh_.edge_triangles[edge];
+    double weight = 0;
+    Eigen::Matrix<double, 2 * D, 2 * kOwn> at_ends = decltype(at_ends)::Zero();
+    for (const int t : {one, other}) {
+      if (t < 0) continue;
+      const auto& own_edges = mesh_.triangle_edges[t];
+      const auto count = std::ranges::count_if(own_edges, [&](int own) { return counts(own); });
+      weight += static_cast<double>(count) * laws_.whole(t).softest *
+                std::pow(remainders_[t].on_edges[mesh_.local_edge(t, edge)], 2);
+      for (int end = 0; end < 2; ++end)
+        at_ends.template block<D, kOwn>(D * end, t == one ? 0 : kOwn) =
+            (t == one ? 1 : -1) * motion_at(t, mesh_.points[mesh_.edges[edge][end]]);
+    }
+    // The integral of the square of a linear function.
+    const auto first = at_ends.template topRows<D>(), last = at_ends.template bottomRows<D>();
+    return mesh_.length(edge) / weight / 6 *
+           (first.transpose() * first + last.transpose() * last + (first + last).transpose() * (first + last));
+  }
+
+  Point middle(int edge) const {
+    return (mesh_.points[mesh_.edges[edge][0]] + mesh_.points[mesh_.edges[edge][1]]) / 2;
+  }
+
+  /// A number that no quotient is below, and hardly above which the least is; 0 if doubles do not tell.
+  double least_quotient(Progress& progress) const {
+    try {
+      double known = kBelow * foreseen(progress);
+      for (int tries = 0; tries < kMostTries && std::isfinite(known); ++tries, known /= 2)
+        if (is_below_all(known, progress)) return known;
+    } catch (const NotPositiveDefinite&) {
+      // Nor is the left side by itself, but for rounding.
+    }
+    return 0;
+  }
+
+  bool is_below_all(double number, Progress& progress) const {
+    try {
+      const Cholesky proof(quotient(number), 0, progress);
+      return true;
+    } catch (const NotPositiveDefinite&) {
+      return false;
+    }
+  }
+
+  /// By the inverse iteration.
+  double foreseen(Progress& progress) const {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(size());
+    for (int t = 0; t < problem_.triangles(); ++t)
+      if (first(t) >= 0) squares.segment<kOwn>(first(t)) = force_on(t) * largest_square();
+    const Cholesky factor(quotient(0), 0, progress);
+    Cholesky::Workspace workspace;
+    std::mt19937 engine(1);
+    Eigen::VectorXd motion(size());
+    for (double& own : motion) own = std::uniform_real_distribution<>(0.5, 1)(engine);
+    double quotient = std::numeric_limits<double>::infinity();
+    for (int step = 0; step < kMotionSteps; ++step) {
+      const Eigen::VectorXd work = squares.cwiseProduct(motion);
+      motion = work;
+      factor.solve(motion, workspace, progress);
+      const double square = squares.dot(motion.cwiseAbs2());
+      quotient = motion.dot(work) / square;
+      motion /= std::sqrt(square);
+    }
+    return quotient;
+  }
+
+  const Discretization& problem_;
+  const Mesh& mesh_;
+  const LawOnMesh& laws_;
+  const UncertainLoads& loads_;
+  const std::optional<int> held_;
+  std::vector<MotionRemainder> remainders_;
+  std::vector<bool> is_fixed_ = std::vector<bool>(mesh_.edges.size(), false);
+};
+
+}  // namespace
+
+double carried_by_motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads,
+                          std::optional<int> held, Progress& progress) {
+  return problem.spaces().components == 1 ? Motions<1>(problem, laws, loads, held).bound(progress)
+                                          : Motions<2>(problem, laws, loads, held).bound(progress);
+}
+
+}  // namespace signorini

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "certify/data/law_pieces.hpp"
+#include "certify/pressure/contact_pressure.hpp"
+#include "fem/discretization.hpp"
+
+namespace signorini {
+
+/// What the discrete equilibrium leaves out of the load, in the energy norm: a bound of
+///
+///     (r − Π₁r, w) + <q − Π₁q, w>  ≤  oscillation · ‖w‖_E,   r = f − Πf,   q = t − Πt, on Γ_C q = −(p* − p)
+///     d,
+///
+/// on one triangle, for every displacement w: with the projections Π₁ onto P1 w counts only up to linear
+/// functions, linear_remainder(). p is the linear pressure with the force and the moment of a steep p*. What
+/// the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp. The budget is for a load
+/// that jumps.
+template <int D>
+double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
+                   const LawOnMesh& laws, CellBudget& budget);
+
+}  // namespace signorini

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "certify/displacement/gap_bubble.hpp"
+#include "certify/displacement/lift.hpp"
+#include "certify/displacement/point_constraints.hpp"
+#include "certify/local_fields.hpp"
+#include "fem/discretization.hpp"
+#include "fem/edge_pieces.hpp"
+#include "progress/progress.hpp"
+#include "result/solution.hpp"
+
+namespace signorini {
+
+/// The gap on a contact edge.
+const Field& gap_on(const Discretization& problem, const ContactEdge& contact);
+
+/// v_h of the certificate: continuous, u_D on Γ_D, v_n ≤ g on Γ_C, v_n = 0 on rollers, and one order better
+/// than u_h.
+///
+/// It is quadratic on every triangle. Its values at the points are those of displacement_at_corners(), made
+/// admissible; its mean over each edge is that of the trace multiplier m, so that it inherits the balance of
+/// volume ∫ tr C σ_h = ∫ m·n of every triangle. What a boundary value has beyond its quadratic part is lifted
+/// into the triangle behind the edge as a polynomial, and what that leaves of u_D by a function of which only
+/// a bound is known: LiftRest.
+///
+/// v_n ≤ g holds for all values that the gap is enclosed by, wherever they lie between the nodes.
+class AdmissibleDisplacement {
+ public:
+  /// `coupling`: the unknowns of the trace space.
+  AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
+                         const Eigen::VectorXd& coupling, Progress& progress);
+
+  /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp.
+  /// What is lifted stays as it is, and so do the values that touch.
+  void relax(const Eigen::VectorXd& work, int steps, Progress& progress);
+
+  /// The same for an elastic body, in so many sweeps: see displacement_relaxation.hpp.
+  void relax_on_stars(int sweeps, Progress& progress);
+
+  template <int D>
+  Quadratic<D> on(int t) const {
+    Quadratic<D> values;
+    for (int k = 0; k < 3; ++k) {
+      values.col(k) = points_.col(problem_.mesh.triangles[t][k]);
+      values.col(3 + k) = middles_.col(problem_.mesh.triangle_edges[t][k]);
+    }
+    return values;
+  }
+
+  /// Something is lifted into the triangle: v_h is of degree 8 there.
+  bool is_lifted(int t) const;
+
+  /// max |z| and max |∇z| of the rest of u_D that is lifted besides, by a function z.
+  struct LiftRest {
+    double value = 0, slope = 0;
+  };
+  LiftRest rest_of_lifts(int t) const;
+
+  /// A bound of |v_h| on the triangle, without what is lifted.
+  double largest_on(int t) const;
+
+  /// Adds what is lifted into triangle t, and its gradient, at a point of the reference triangle.
+  template <int D>
+  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse_jacobian,
+                 Eigen::Matrix<double, D, 1>& value, Tensor<D>& slope) const;
+
+  /// The value on an edge at s ∈ [0, 1] from its first to its second point.
+  Eigen::VectorXd on_edge(int edge, double s) const;
+
+  /// v_n on a contact edge, and g − v_n.
+  double along_contact(const ContactEdge& contact, double s) const;
+  double room(const ContactEdge& contact, double s) const;
+
+  /// Why v_h is not admissible, in words; empty if it is.
+  const std::vector<std::string>& unmet() const { return unmet_; }
+
+ private:
+  /// What is lifted from the edge, or null; the edge runs from its first to its second point.
+  const Lift* lift(int edge) const;
+
+  using Values = std::function<Eigen::VectorXd(double s)>;
+
+  void set_middles(const Eigen::VectorXd& coupling);
+  void constrain_points();
+  void fix_points(int edge, const Fixed& fixed);
+  void admit(int point, std::vector<PointConstraint> constraints);
+  void follow_traces();
+  void find_followed_gaps();
+  /// The clearance is 0 at both ends, and a polynomial is near the gap between them.
+  bool follows_gap(const ContactEdge& contact) const;
+  bool exceeds_gap(const ContactEdge& contact) const;
+  void fix(const BoundaryPart& part, const Fixed& condition);
+  void add_rest(int edge, const EdgeLine& line, const Field& field);
+  double small_coefficient() const;
+  void roll(const BoundaryPart& part);
+  void lower_points(CellBudget& budget);
+  void meet(const ContactEdge& contact, CellBudget& budget);
+  void close(const ContactEdge& contact);
+  void lower_below(const ContactEdge& contact, CellBudget& budget);
+  BelowGap below_gap(const ContactEdge& contact, const EdgeLine& line) const;
+  void add_lift(int edge, const Values& d);
+  void refuse(const std::string& reason);
+  void refuse_point(int point);
+
+  const Field& gap(const ContactEdge& contact) const;
+  double gap_at(const ContactEdge& contact, double s) const;
+  /// The vector with v_n = direction · v on a contact edge.
+  Eigen::VectorXd direction(const ContactEdge& contact) const;
+
+  const Discretization& problem_;
+  int components_;
+  Eigen::VectorXd clearance_;  ///< a value a row of the clearance space
+  Eigen::MatrixXd points_;     ///< a column a point
+  Eigen::MatrixXd middles_;    ///< a column an edge
+  double scale_;               ///< max |v|
+  std::map<int, Eigen::VectorXd> fixed_points_;
+  std::map<int, std::vector<PointConstraint>> constraints_;  ///< of contacts and rollers, by points
+  std::map<int, double> off_gap_;  ///< of edges that follow their gap: by how much, over the bubble
+  std::map<int, Lift> lifts_;
+  std::map<int, LiftRest> rests_;  ///< of u_D on edges
+  std::vector<std::string> unmet_;
+};
+
+}  // namespace signorini

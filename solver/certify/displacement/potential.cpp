@@ -1,0 +1,105 @@
+#include "certify/displacement/potential.hpp"
+
+#include "certify/local_fields.hpp"
+
+namespace signorini {
+namespace {
+
+template <int D>
+class Potential {
+ public:
+  Potential(const Discretization& problem, const Solution& solution)
+      : problem_(problem),
+        solution_(solution),
+        stress_(problem.spaces(), triangle_points()),
+        law_(problem.problem.material),
+        weights_(corner_weights()) {}
+
+  /// Column z: the value at corner z.
+  Eigen::Matrix<double, D, 3> at_corners(int t) {
+    const auto corners = problem_.mesh.corners(t);
+    const Eigen::Matrix<double, 2 * D, 3> slope = gradient_at_corners(t, AffineMap(corners));
+    Eigen::Matrix<double, D, 3> rise,
+        bend;  // along edge e from corner e + 1 to e + 2: of u, and of its slope
+    for (int e = 0; e < 3; ++e) {
+      const int a = (e + 1) % 3, b = (e + 2) % 3;
+      const Vector edge = corners[b] - corners[a];
+      for (int c = 0; c < D; ++c) {
+        const auto at_a = slope.template block<2, 1>(2 * c, a), at_b = slope.template block<2, 1>(2 * c, b);
+        rise(c, e) = 0.5 * (at_a + at_b).dot(edge);
+        bend(c, e) = (at_b - at_a).dot(edge);
+      }
+    }
+    // A gradient rises by nothing around the triangle.
+    rise.colwise() -= Eigen::Matrix<double, D, 1>(rise.rowwise().mean());
+    Eigen::Matrix<double, D, 3> values;
+    values << Eigen::Matrix<double, D, 1>::Zero(), rise.col(2), -rise.col(1);
+    // The mean of a quadratic function is that of its values at the middles of the edges.
+    const Eigen::Matrix<double, D, 1> mean = values.rowwise().mean() - bend.rowwise().mean() / 8;
+    values.colwise() += displacement(t) - mean;
+    return values;
+  }
+
+  /// Of the triangle that was asked for last, as it resists most of what it may be strained by.
+  double stiffness() const { return TriangleRule::size / softness_; }
+
+ private:
+  Eigen::Matrix<double, 2 * D, 3> gradient_at_corners(int t, const AffineMap& map) {
+    Eigen::Matrix<double, 2 * D, 3> gradient = Eigen::Matrix<double, 2 * D, 3>::Zero();
+    softness_ = 0;
+    for (int q = 0; q < TriangleRule::size; ++q) {
+      const TensorMap<D>& compliance = law_(map(triangle_rule().points[q])).compliance;
+      gradient += compliance * stress_(q, map, solution_.stress.col(t)) * weights_.col(q).transpose();
+      softness_ += compliance.trace();
+    }
+    if constexpr (D == 2)
+      for (int z = 0; z < 3; ++z) {
+        const double rotation = solution_.rotation[problem_.mesh.triangles[t][z]];
+        gradient(1, z) += rotation;
+        gradient(2, z) -= rotation;
+      }
+    return gradient;
+  }
+
+  Eigen::Matrix<double, D, 1> displacement(int t) const {
+    Eigen::Matrix<double, D, 1> mean = Eigen::Matrix<double, D, 1>::Zero();
+    const auto u = solution_.displacement.col(t);
+    for (int i = 0; i < u.size(); i += D) mean += u.template segment<D>(i);
+    return mean * D / u.size();
+  }
+
+  const Discretization& problem_;
+  const Solution& solution_;
+  StressValues<D> stress_;
+  LawField<D> law_;
+  CornerWeights weights_;
+  double softness_ = 0;
+};
+
+/// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the more.
+template <int D>
+Eigen::MatrixXd average(const Discretization& problem, const Solution& solution) {
+  Potential<D> potential(problem, solution);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(D, problem.mesh.points.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(problem.mesh.points.size());
+  for (int t = 0; t < problem.triangles(); ++t) {
+    const Eigen::Matrix<double, D, 3> corners = potential.at_corners(t);
+    for (int z = 0; z < 3; ++z) {
+      const int point = problem.mesh.triangles[t][z];
+      values.col(point) += potential.stiffness() * corners.col(z);
+      weights[point] += potential.stiffness();
+    }
+  }
+  // Points without a triangle have nothing to average.
+  for (Eigen::Index p = 0; p < values.cols(); ++p)
+    if (weights[p] > 0) values.col(p) /= weights[p];
+  return values;
+}
+
+}  // namespace
+
+Eigen::MatrixXd displacement_at_corners(const Discretization& problem, const Solution& solution) {
+  return problem.spaces().components == 1 ? average<1>(problem, solution) : average<2>(problem, solution);
+}
+
+}  // namespace signorini

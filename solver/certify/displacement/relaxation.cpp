@@ -1,0 +1,234 @@
+#include "certify/displacement/relaxation.hpp"
+
+#include <Eigen/LU>
+
+#include "certify/data/balanced_load.hpp"
+#include "certify/local_fields.hpp"
+#include "certify/tensor.hpp"
+#include "fem/lagrange.hpp"
+
+namespace signorini {
+namespace {
+
+using Local = Eigen::Matrix<double, 6, 1>;
+using LocalSquare = Eigen::Matrix<double, 6, 6>;
+
+/// The integrals over the reference triangle of products of the six functions' derivatives and a weight.
+struct Products {
+  template <typename Weight>
+  explicit Products(const Weight& weight_at) {
+    for (int q = 0; q < TriangleRule::size; ++q) {
+      const double weight = triangle_rule().weights[q] * weight_at(triangle_rule().points[q]);
+      const Eigen::Matrix<double, 2, 6>& slope = quadratic_gradients()[q];
+      xx += weight * slope.row(0).transpose() * slope.row(0);
+      xy += weight * (slope.row(0).transpose() * slope.row(1) + slope.row(1).transpose() * slope.row(0));
+      yy += weight * slope.row(1).transpose() * slope.row(1);
+    }
+  }
+
+  LocalSquare xx = LocalSquare::Zero(), xy = LocalSquare::Zero(), yy = LocalSquare::Zero();
+};
+
+template <typename Visit>
+void for_triangles(const Mesh& mesh, const Visit& visit) {
+  const int points = static_cast<int>(mesh.points.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto& [d, e, f] = mesh.triangle_edges[t];
+    visit(t, std::array{a, b, c, points + d, points + e, points + f});
+  }
+}
+
+Eigen::Index functions(const Mesh& mesh) {
+  return static_cast<Eigen::Index>(mesh.points.size() + mesh.edges.size());
+}
+
+using Modulus = Eigen::Matrix2d (*)(const Law<1>&);
+
+/// The second derivative of ½ ‖∇v‖²_M. The modulus is constant on each triangle, or linear: then it is that
+/// at the corners times the hats.
+class Curvature {
+ public:
+  Curvature(const Discretization& problem, Modulus of) : mesh_(problem.mesh) {
+    if (problem.element.has_constant_material())
+      products_.emplace_back([](const Point&) { return 1.; });
+    else
+      for (int z = 0; z < 3; ++z)
+        products_.emplace_back([z](const Point& x) { return triangle_basis(1, x)[z]; });
+    take_moduli(problem, of);
+  }
+
+  void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+    product.setZero();
+    for_triangles(mesh_, [&](int t, const std::array<int, 6>& nodes) {
+      Local own, change = Local::Zero();
+      for (int k = 0; k < 6; ++k) own[k] = v[nodes[k]];
+      for (std::size_t i = 0; i < products_.size(); ++i) {
+        const Eigen::Vector3d e = modulus(t, i);
+        change +=
+            e[0] * (products_[i].xx * own) + e[1] * (products_[i].xy * own) + e[2] * (products_[i].yy * own);
+      }
+      for (int k = 0; k < 6; ++k) product[nodes[k]] += change[k];
+    });
+  }
+
+  Eigen::VectorXd diagonal() const {
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(functions(mesh_));
+    for_triangles(mesh_, [&](int t, const std::array<int, 6>& nodes) {
+      for (std::size_t i = 0; i < products_.size(); ++i) {
+        const Eigen::Vector3d e = modulus(t, i);
+        for (int k = 0; k < 6; ++k)
+          diagonal[nodes[k]] +=
+              e[0] * products_[i].xx(k, k) + e[1] * products_[i].xy(k, k) + e[2] * products_[i].yy(k, k);
+      }
+    });
+    return diagonal;
+  }
+
+ private:
+  /// For the derivatives on the reference triangle: xx, xy, yy.
+  Eigen::Vector3d modulus(int t, std::size_t i) const {
+    return moduli_.col(t).segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+
+  void take_moduli(const Discretization& problem, Modulus of) {
+    LawField<1> law(problem.problem.material);
+    const bool constant = products_.size() == 1;
+    const auto kept = [](const Eigen::Matrix2d& e) { return Eigen::Vector3d(e(0, 0), e(0, 1), e(1, 1)); };
+    moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, problem.triangles());
+    for (int t = 0; t < problem.triangles(); ++t) {
+      const AffineMap map(mesh_.corners(t));
+      const Eigen::Matrix2d inverse = map.jacobian.inverse();
+      const auto at = [&](const Point& x) -> Eigen::Matrix2d {
+        return map.determinant * inverse * of(law(x)) * inverse.transpose();
+      };
+      if (constant) {
+        moduli_.col(t) = kept(at(mesh_.centroid(t)));
+        continue;
+      }
+      std::array<Eigen::Matrix2d, TriangleRule::size> at_points;
+      for (int q = 0; q < TriangleRule::size; ++q) at_points[q] = at(map(triangle_rule().points[q]));
+      const std::array<Eigen::Matrix2d, 3> corners = linear_modulus(at_points);
+      moduli_.col(t) << kept(corners[0]), kept(corners[1]), kept(corners[2]);
+    }
+  }
+
+  const Mesh& mesh_;
+  std::vector<Products> products_;
+  Eigen::MatrixXd moduli_;
+};
+
+/// (φ, hat) for the six functions and the three hats, on the reference triangle.
+Eigen::Matrix<double, 6, 3> products_with_hats() {
+  Eigen::Matrix<double, 6, 3> products = Eigen::Matrix<double, 6, 3>::Zero();
+  for (int q = 0; q < TriangleRule::size; ++q) {
+    const Point& x = triangle_rule().points[q];
+    products += triangle_rule().weights[q] * quadratic_basis(x) * triangle_basis(1, x).transpose();
+  }
+  return products;
+}
+
+void add_work_of_traction(const Discretization& problem, Eigen::VectorXd& work) {
+  const Mesh& mesh = problem.mesh;
+  const TractionField& traction = problem.traction;
+  const Eigen::Index points = static_cast<Eigen::Index>(mesh.points.size());
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    for (int q = 0; q < EdgeRule::size; ++q) {
+      const double s = edge_rule().points[q],
+                   force = edge_rule().weights[q] * mesh.length(edge) * traction(edge, 0, s);
+      work[mesh.edges[edge][0]] += force * (1 - s) * (1 - 2 * s);
+      work[mesh.edges[edge][1]] += force * s * (2 * s - 1);
+      work[points + edge] += force * 4 * s * (1 - s);
+    }
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd work_of_loads(const Discretization& problem) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
+  const Eigen::Matrix<double, 6, 3> hats = products_with_hats();
+  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const double twice_area = AffineMap(problem.mesh.corners(t)).determinant;
+    const Local own = twice_area * hats * discrete_load<1>(problem, t).transpose();
+    for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
+  });
+  add_work_of_traction(problem, work);
+  return work;
+}
+
+Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField& tau) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
+  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const AffineMap map(problem.mesh.corners(t));
+    const Eigen::Matrix2d inverse = map.jacobian.inverse();
+    const StressAtPoints stress = map.determinant * inverse * tau(t);
+    Local own = Local::Zero();
+    for (int q = 0; q < TriangleRule::size; ++q)
+      own += triangle_rule().weights[q] * quadratic_gradients()[q].transpose() * stress.col(q);
+    for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
+  });
+  return work;
+}
+
+QuadraticValues::QuadraticValues(const Mesh& mesh)
+    : points(Eigen::VectorXd::Zero(mesh.points.size())),
+      middles(Eigen::VectorXd::Zero(mesh.edges.size())),
+      held_points(mesh.points.size(), false),
+      held_middles(mesh.edges.size(), false) {}
+
+Quadratic<1> QuadraticValues::on(const Mesh& mesh, int t) const {
+  Quadratic<1> own;
+  for (int k = 0; k < 3; ++k) {
+    own[k] = points[mesh.triangles[t][k]];
+    own[3 + k] = middles[mesh.triangle_edges[t][k]];
+  }
+  return own;
+}
+
+void QuadraticValues::hold(const Mesh& mesh, int edge) {
+  held_middles[edge] = true;
+  for (const int point : mesh.edges[edge]) held_points[point] = true;
+}
+
+Eigen::Matrix2d stiffness_of(const Law<1>& law) {
+  return law.stiffness;
+}
+
+Eigen::Matrix2d turned_compliance_of(const Law<1>& law) {
+  return law.stiffness / law.stiffness.determinant();
+}
+
+void relax(const Discretization& problem, Modulus modulus, QuadraticValues& values,
+           const Eigen::VectorXd& work, int steps, Progress& progress) {
+  const Curvature curvature(problem, modulus);
+  const Eigen::Index points = values.points.size();
+  Eigen::VectorXd v(work.size());
+  v << values.points, values.middles;
+  // Nothing moves where the scale is 0.
+  Eigen::VectorXd scale = curvature.diagonal();
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    const bool held = i < points ? values.held_points[i] : values.held_middles[i - points];
+    scale[i] = held || scale[i] == 0 ? 0 : 1 / scale[i];
+  }
+
+  Eigen::VectorXd product(v.size()), residual = work;
+  curvature.apply(v, product);
+  residual -= product;
+  Eigen::VectorXd direction = scale.cwiseProduct(residual);
+  double size = residual.dot(direction);
+  for (int step = 0; step < steps && size > 0; ++step) {
+    progress.check();
+    curvature.apply(direction, product);
+    const double length = size / direction.dot(product);
+    v += length * direction;
+    residual -= length * product;
+    const double before = std::exchange(size, residual.dot(scale.cwiseProduct(residual)));
+    direction = scale.cwiseProduct(residual) + size / before * direction;
+  }
+  values.points = v.head(points);
+  values.middles = v.tail(v.size() - points);
+}
+
+}  // namespace signorini

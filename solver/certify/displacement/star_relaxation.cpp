@@ -1,0 +1,123 @@
+#include "certify/displacement/star_relaxation.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "mesh/mesh.hpp"
+
+namespace signorini {
+namespace {
+
+using Matrix = TriangleForms::Matrix;
+using FormVector = TriangleForms::Vector;
+
+/// The unknowns of a triangle's functions, and their signs.
+struct Place {
+  std::array<int, TriangleForms::kLocal> unknowns;
+  std::array<double, 3> edge_signs;
+};
+
+class Stars {
+ public:
+  Stars(const Mesh& mesh, const TriangleForms& forms)
+      : mesh_(mesh),
+        forms_(forms),
+        triangles_(triangles_at_points(mesh)),
+        column_(forms.unknowns(mesh), -1),
+        x_(Eigen::VectorXd::Zero(forms.unknowns(mesh))) {}
+
+  /// The unknowns around the point become the best.
+  void relax(int point) {
+    collect(point);
+    if (own_.empty()) return;
+    const auto size = static_cast<Eigen::Index>(own_.size());
+    matrix_.setZero(size, size);
+    right_.setZero(size);
+    for (const int t : triangles_[point]) add(t);
+    const Eigen::LLT<Eigen::MatrixXd> factor(matrix_);
+    if (factor.info() == Eigen::Success) {
+      const Eigen::VectorXd step = factor.solve(right_);
+      if (step.allFinite())
+        for (Eigen::Index i = 0; i < size; ++i) x_[own_[i]] += step[i];
+    }
+    for (const int unknown : own_) column_[unknown] = -1;
+  }
+
+  Eigen::VectorXd take() { return std::move(x_); }
+
+ private:
+  void collect(int point) {
+    own_.clear();
+    const auto take = [&](int first, int count) {
+      for (int unknown = first; unknown < first + count; ++unknown)
+        if (!forms_.held[unknown] && column_[unknown] < 0) {
+          column_[unknown] = static_cast<int>(own_.size());
+          own_.push_back(unknown);
+        }
+    };
+    take(forms_.of_point(point), forms_.per_point);
+    for (const int t : triangles_[point])
+      for (int e = 0; e < 3; ++e)
+        if (mesh_.triangles[t][e] != point)
+          take(forms_.of_edge(mesh_, mesh_.triangle_edges[t][e]), forms_.per_edge);
+  }
+
+  Place place_of(int t) const {
+    Place place;
+    int i = 0;
+    for (const int point : mesh_.triangles[t])
+      for (int k = 0; k < forms_.per_point; ++k) place.unknowns[i++] = forms_.of_point(point) + k;
+    for (int e = 0; e < 3; ++e) {
+      const int edge = mesh_.triangle_edges[t][e];
+      for (int k = 0; k < forms_.per_edge; ++k) place.unknowns[i++] = forms_.of_edge(mesh_, edge) + k;
+      const bool backwards = mesh_.triangles[t][(e + 1) % 3] != mesh_.edges[edge][0];
+      place.edge_signs[e] = forms_.edges_are_odd && backwards ? -1 : 1;
+    }
+    return place;
+  }
+
+  double sign(const Place& place, int i) const {
+    const int of_points = 3 * forms_.per_point;
+    return i < of_points ? 1 : place.edge_signs[(i - of_points) / forms_.per_edge];
+  }
+
+  void add(int t) {
+    const Place place = place_of(t);
+    const Matrix& matrix = forms_.matrices[forms_.matrix_of[t]];
+    FormVector x;
+    for (int i = 0; i < x.size(); ++i) x[i] = sign(place, i) * x_[place.unknowns[i]];
+    const FormVector slope = forms_.slopes[t] + matrix * x;
+    for (int i = 0; i < x.size(); ++i) {
+      const int row = column_[place.unknowns[i]];
+      if (row < 0) continue;
+      right_[row] -= sign(place, i) * slope[i];
+      for (int j = 0; j < x.size(); ++j) {
+        const int column = column_[place.unknowns[j]];
+        if (column >= 0) matrix_(row, column) += sign(place, i) * sign(place, j) * matrix(i, j);
+      }
+    }
+  }
+
+  const Mesh& mesh_;
+  const TriangleForms& forms_;
+  const std::vector<std::vector<int>> triangles_;
+  std::vector<int> column_;  ///< of each unknown in the star's matrix, or -1
+  std::vector<int> own_;     ///< the unknowns of the star
+  Eigen::MatrixXd matrix_;
+  Eigen::VectorXd right_, x_;
+};
+
+}  // namespace
+
+Eigen::VectorXd relax_stars(const Mesh& mesh, const TriangleForms& forms, int sweeps, Progress& progress) {
+  Stars stars(mesh, forms);
+  const int points = static_cast<int>(mesh.points.size());
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (int i = 0; i < points; ++i) {
+      constexpr int often = 1000;
+      if (i % often == 0) progress.check();
+      stars.relax(sweep % 2 == 0 ? i : points - 1 - i);
+    }
+  return stars.take();
+}
+
+}  // namespace signorini

@@ -1,0 +1,152 @@
+#include <cmath>
+
+#include "certify/data/balanced_load.hpp"
+#include "certify/elasticity/macro_data.hpp"
+#include "certify/triangle_sums.hpp"
+
+namespace signorini {
+namespace {
+
+/// A shape that has come up so often is worth its operators.
+constexpr int kOften = 100;
+
+/// Stresses are of degree 3.
+int degree_of_fields(bool lifted) {
+  return std::max(3, lifted ? Lift::kDegreeInside - 1 : 1);
+}
+
+}  // namespace
+
+ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution,
+                         const AdmissibleDisplacement& v, const EdgeTractions& tractions)
+    : problem_(problem),
+      solution_(solution),
+      v_(v),
+      tractions_(tractions),
+      has_load_(problem.problem.body.size() > 0),
+      shapes_(problem) {}
+
+ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
+  return {macro_data(problem_, tractions_, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+}
+
+/// The operators of the triangle's shape, or null.
+const MacroNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
+  Shape& shape = shapes_(t, [] { return Shape(); });
+  if (++shape.seen == kOften)
+    shape.norms = std::make_unique<const MacroNorms>(macro_rule(problem_.spaces(), 6), map,
+                                                     SymmetricLaw(law(map({0, 0})).compliance));
+  return shape.norms.get();
+}
+
+/// The strains of what is lifted into the triangle.
+std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap& map,
+                                                         const MacroRule& rule) const {
+  std::vector<Eigen::Vector3d> strains;
+  for (const MacroElement::Place& place : rule.places) {
+    Eigen::Vector2d value = Eigen::Vector2d::Zero();
+    Tensor<2> slope = Tensor<2>::Zero();
+    v_.add_lifts<2>(t, place.point, map.jacobian.inverse(), value, slope);
+    strains.push_back(mandel(slope));
+  }
+  return strains;
+}
+
+/// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does
+/// no more work on the rest of v than the product of their norms.
+void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+                                   const Inner& inner, TriangleSums& sums) const {
+  if (!has_load_) return;
+  const ProjectedLoad& load = problem_.body[t];
+  const Quadratic<2> quadratic = quadratic_load<2>(problem_, t);
+  double work = 0, rest_square = 0;
+  for (int q = 0; q < rule.size(); ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    const double weight = rule.places[q].weight * map.determinant;
+    Eigen::Vector2d rest =
+        inner.reshaped(2, MacroRule::kInner) * rule.places[q].displacement_basis.tail<MacroRule::kInner>();
+    if (!given.lifted.empty()) {
+      Tensor<2> slope = Tensor<2>::Zero();
+      v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
+    }
+    work += weight * (quadratic * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
+    rest_square += weight * rest.squaredNorm();
+  }
+  sums.energy -= work;
+  sums.energy_slack += load.rest * std::sqrt(rest_square) + load.uncertain_work * v_.largest_on(t);
+}
+
+void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law,
+                                    TriangleSums& sums) const {
+  const AdmissibleDisplacement::LiftRest rest = v_.rest_of_lifts(t);
+  if (rest.slope == 0) return;
+  const ProjectedLoad& load = problem_.body[t];
+  const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
+  sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
+                       rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
+  sums.add_unknown_strain(zeta);
+}
+
+TriangleSums ElasticSums::by_norms(const MacroNorms& norms, const Given& given, Inner& inner) const {
+  constexpr int most = MacroElement::kData + kMaxLocal + 12;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms.gap.cols());
+  z << given.data, given.stress, given.displacement;
+  const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
+    return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
+  };
+  const auto stresses = z.head(norms.correction.cols());
+  inner = norms.inner * z;
+  TriangleSums sums;
+  sums.gap = square(norms.gap, z);
+  sums.direct_gap = square(norms.direct_gap, z);
+  sums.correction = square(norms.correction, stresses);
+  sums.skew = square(norms.skew, given.stress);
+  sums.stress = square(norms.stress, given.stress);
+  sums.strain = sums.energy = square(norms.strain, z) / 2;
+  return sums;
+}
+
+TriangleSums ElasticSums::by_points(const AffineMap& map, const MacroRule& rule, Given given,
+                                    double error_of_whole, LawField<2>& law, Inner& inner) const {
+  const MacroValues<1> values(rule, map, given, laws_at(problem_, rule, map, law));
+  inner = values.inner;
+  TriangleSums sums;
+  sums.gap = values.gap.squaredNorm();
+  sums.direct_gap = values.direct_gap.squaredNorm();
+  sums.correction = values.correction.squaredNorm();
+  sums.skew = values.skew.squaredNorm();
+  sums.stress = values.stress.squaredNorm();
+  sums.strain = sums.energy = values.strain.squaredNorm() / 2;
+  // What the law has beyond a polynomial counts twice, in the integral and in the rule.
+  for (int q = 0; q < rule.size(); ++q) {
+    const double error = rule.errors.empty() ? error_of_whole : rule.errors[q];
+    const double of_strain = values.strain.middleRows<3>(3 * q).squaredNorm();
+    sums.slack += 2 * error *
+                  (2 * values.stress.middleRows<4>(4 * q).squaredNorm() +
+                   3 * values.correction.middleRows<3>(3 * q).squaredNorm() + of_strain);
+    sums.energy_slack += error * of_strain;
+  }
+  return sums;
+}
+
+TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
+  const AffineMap map(problem_.mesh.corners(t));
+  Given given = given_on(t, map);
+  const bool lifted = v_.is_lifted(t), constant_law = problem_.element.has_constant_material();
+  const MacroNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
+  const int of_fields = degree_of_fields(lifted);
+  const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
+  const std::vector<LawPiece> pieces = laws.cut(t);
+  if (!pieces.empty()) rule_of_pieces_.fill(problem_.spaces(), pieces, of_fields, laws.tolerance());
+  const MacroRule& rule = pieces.empty() ? macro_rule(problem_.spaces(), degree) : rule_of_pieces_;
+  if (lifted) given.lifted = lifted_strains(t, map, rule);
+  Inner inner;
+  TriangleSums sums =
+      norms ? by_norms(*norms, given, inner)
+            : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
+  add_work_of_load(t, map, rule, given, inner, sums);
+  add_rest_of_lifts(t, map, laws.whole(t), sums);
+  return sums;
+}
+
+}  // namespace signorini

@@ -1,0 +1,244 @@
+#include "certify/elasticity/macro_values.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+namespace signorini {
+namespace {
+
+constexpr int kInner = MacroRule::kInner;
+constexpr double kHalf = std::numbers::sqrt2 / 2;  ///< √½
+
+/// Mandel's strain of v = Σ φ_i v_i from the gradients of the φ_i, the components of v in turns.
+template <int Nodes>
+Eigen::Matrix<double, 3, 2 * Nodes> strains(const Eigen::Matrix<double, 2, Nodes>& gradients) {
+  Eigen::Matrix<double, 3, 2 * Nodes> strain;
+  for (int i = 0; i < Nodes; ++i)
+    strain.template middleCols<2>(2 * i) << gradients(0, i), 0, 0, gradients(1, i), kHalf * gradients(1, i),
+        kHalf * gradients(0, i);
+  return strain;
+}
+
+/// (xx, yy, √2 xy) and the skew part (xy − yx) / √2 of σ_h from its coefficients, the rows in turns.
+Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 16> stresses(const AffineMap& map, const LocalVectors& row) {
+  Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 16> stress(4, 2 * row.cols());
+  for (int a = 0; a < row.cols(); ++a) {
+    const Vector tau = map.jacobian * row.col(a) / map.determinant;
+    stress.middleCols<2>(2 * a) << tau.x(), 0, 0, tau.y(), kHalf * tau.y(), kHalf * tau.x(), kHalf * tau.y(),
+        -kHalf * tau.x();
+  }
+  return stress;
+}
+
+const SymmetricLaw& law_at(std::span<const SymmetricLaw> laws, int q) {
+  return laws[laws.size() == 1 ? 0 : q];
+}
+
+}  // namespace
+
+Eigen::Matrix3d piola(const AffineMap& map) {
+  const double a = map.jacobian(0, 0), b = map.jacobian(0, 1), c = map.jacobian(1, 0), d = map.jacobian(1, 1);
+  Eigen::Matrix3d transform;
+  transform << a * a, b * b, 2 * a * b, c * c, d * d, 2 * c * d, a * c, b * d, a * d + b * c;
+  transform.row(2) *= std::numbers::sqrt2;
+  return transform / map.determinant;
+}
+
+MacroRule::MacroRule(const Spaces& spaces, int degree)
+    : places(MacroElement::places(rule_of_degree(degree))) {
+  evaluate(spaces);
+}
+
+void MacroRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
+                     double tolerance) {
+  places.clear();
+  errors.clear();
+  for (const LawPiece& piece : pieces) {
+    const int degree = piece.degree_of_rule(of_fields, tolerance);
+    const auto own = MacroElement::places(rule_of_degree(degree), piece.place.corners);
+    places.insert(places.end(), own.begin(), own.end());
+    errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
+  }
+  evaluate(spaces);
+}
+
+namespace {
+
+/// Of both pairs of spaces, by their order.
+template <int Degree>
+const MacroRule& macro_rule_of_degree(int order) {
+  static const std::array<MacroRule, 2> rules{MacroRule(spaces_of(Scheme::nonconforming, 2), Degree),
+                                              MacroRule(spaces_of(Scheme::conforming, 2), Degree)};
+  return rules[order];
+}
+
+}  // namespace
+
+const MacroRule& macro_rule(const Spaces& spaces, int degree) {
+  if (degree <= 6) return macro_rule_of_degree<6>(spaces.order);
+  if (degree <= 10) return macro_rule_of_degree<10>(spaces.order);
+  return degree <= 18 ? macro_rule_of_degree<18>(spaces.order) : macro_rule_of_degree<30>(spaces.order);
+}
+
+void MacroRule::evaluate(const Spaces& spaces) {
+  const MacroElement& element = macro_element();
+  values.resize(places.size());
+  for (std::size_t q = 0; q < places.size(); ++q) {
+    const MacroElement::Place& place = places[q];
+    Values& at = values[q];
+    for (int k = 0; k < MacroElement::kFree; ++k)
+      at.free.col(k) = MacroElement::stress(place, element.free.col(k));
+    at.basis = quadratic_basis(place.point);
+    at.gradients = quadratic_gradients(place.point);
+    at.stress = spaces.row.reference_values(place.point);
+  }
+}
+
+Eigen::Vector3d mandel(const Tensor<2>& tensor) {
+  return {tensor[0], tensor[3], (tensor[1] + tensor[2]) * kHalf};
+}
+
+SymmetricLaw::SymmetricLaw(const Eigen::Matrix4d& c) {
+  Eigen::Matrix<double, 4, 3> from;
+  from << 1, 0, 0, 0, 0, kHalf, 0, 0, kHalf, 0, 1, 0;
+  compliance = from.transpose() * c * from;
+  stiffness = compliance.inverse();
+  factor = compliance.llt().matrixL();
+  const Eigen::Vector4d rotation(0, kHalf, -kHalf, 0);
+  skew_compliance = rotation.dot(c * rotation);
+}
+
+std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
+                                  LawField<2>& law) {
+  std::vector<SymmetricLaw> laws;
+  const std::size_t count = problem.element.has_constant_material() ? 1 : rule.places.size();
+  for (std::size_t q = 0; q < count; ++q) laws.emplace_back(law(map(rule.places[q].point)).compliance);
+  return laws;
+}
+
+template <int Columns>
+MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
+                                  const Block<MacroElement::kData>& data,
+                                  const Block<Eigen::Dynamic>& coefficients,
+                                  std::span<const SymmetricLaw> laws)
+    : admissible(rule.size(), Block<3>::Zero(3, data.cols())),
+      discrete(admissible),
+      skew(rule.size(), data.cols()) {
+  const Eigen::Matrix3d to_triangle = piola(map);
+  const Block<MacroElement::kStresses> with_data = macro_element().from_data * data;
+  constexpr int kFree = MacroElement::kFree;
+  Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
+  Block<kFree> free_right = Block<kFree>::Zero(kFree, data.cols());
+  for (int q = 0; q < rule.size(); ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    const auto of_stress = stresses(map, at.stress);
+    discrete[q].noalias() = of_stress.template topRows<3>() * coefficients;
+    skew.row(q).noalias() = of_stress.row(3) * coefficients;
+    for (Eigen::Index k = 0; k < data.cols(); ++k)
+      admissible[q].col(k).noalias() = to_triangle * MacroElement::stress(rule.places[q], with_data.col(k));
+    const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
+    const Eigen::Matrix<double, kFree, 3> weighted =
+        rule.places[q].weight * own.transpose() * law_at(laws, q).compliance;
+    free_matrix += weighted * own;
+    free_right += weighted * (discrete[q] - admissible[q]);
+  }
+  const Block<kFree> free = free_matrix.ldlt().solve(free_right);
+  for (int q = 0; q < rule.size(); ++q) admissible[q] += (to_triangle * rule.values[q].free).eval() * free;
+}
+
+template <int Columns>
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule, const AffineMap& map,
+                                                          const MacroStress<Columns>& stress,
+                                                          std::span<const SymmetricLaw> laws) {
+  Eigen::Matrix<double, Eigen::Dynamic, Columns> rows(3 * rule.size(), stress.skew.cols());
+  for (int q = 0; q < rule.size(); ++q)
+    rows.template middleRows<3>(3 * q) = std::sqrt(rule.places[q].weight * map.determinant) *
+                                         law_at(laws, q).factor.transpose() *
+                                         (stress.admissible[q] - stress.discrete[q]);
+  return rows;
+}
+
+template <int Columns>
+MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
+                                  std::span<const SymmetricLaw> laws) {
+  const int points = rule.size();
+  const Eigen::Index columns = given.data.cols();
+  const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
+  const auto weight = [&](int q) { return rule.places[q].weight * map.determinant; };
+  const MacroStress<Columns> sigma(rule, map, given.data, given.stress, laws);
+
+  // v is v_h and what brings its strain nearest to C σ*.
+  std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));
+  Eigen::Matrix<double, 2 * kInner, 2 * kInner> inner_matrix = decltype(inner_matrix)::Zero();
+  Block<2 * kInner> inner_right = Block<2 * kInner>::Zero(2 * kInner, columns);
+  for (int q = 0; q < points; ++q) {
+    const MacroRule::Values& at = rule.values[q];
+    strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
+    if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
+    const auto own =
+        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>());
+    const SymmetricLaw& law = law_at(laws, q);
+    const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law.stiffness;
+    inner_matrix += weighted * own;
+    inner_right += weighted * (law.compliance * sigma.admissible[q] - strains_of_v[q]);
+  }
+  inner = inner_matrix.ldlt().solve(inner_right);
+
+  gap.resize(3 * points, columns);
+  direct_gap.resize(3 * points, columns);
+  strain.resize(3 * points, columns);
+  correction = signorini::correction(rule, map, sigma, laws);
+  skew.resize(points, columns);
+  stress.resize(4 * points, columns);
+  for (int q = 0; q < points; ++q) {
+    const SymmetricLaw& own = law_at(laws, q);
+    const double root = std::sqrt(weight(q)), of_skew = root * std::sqrt(own.skew_compliance);
+    const auto factor = own.factor.template triangularView<Eigen::Lower>();
+    const Block<3> all =
+        strains_of_v[q] +
+        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>()) * inner;
+    strain.template middleRows<3>(3 * q) = root * factor.solve(all);
+    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.admissible[q] - all);
+    direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.discrete[q] - all);
+    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma.discrete[q];
+    skew.row(q) = stress.row(4 * q + 3) = of_skew * sigma.skew.row(q);
+  }
+}
+
+template struct MacroStress<kAiryColumns>;
+template Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> correction(const MacroRule&, const AffineMap&,
+                                                                        const MacroStress<kAiryColumns>&,
+                                                                        std::span<const SymmetricLaw>);
+template struct MacroValues<1>;
+template struct MacroValues<Eigen::Dynamic>;
+
+MacroNorms::MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law) {
+  constexpr int data = MacroElement::kData, displacement = 12;
+  const Eigen::Index functions = 2 * rule.values.front().stress.cols();
+  const Eigen::MatrixXd unit =
+      Eigen::MatrixXd::Identity(data + functions + displacement, data + functions + displacement);
+  const MacroValues<Eigen::Dynamic> values(
+      rule, map,
+      {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>(), {}},
+      std::span(&law, 1));
+  const auto factor = [](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+    return Eigen::HouseholderQR<Eigen::MatrixXd>(rows)
+        .matrixQR()
+        .topRows(rows.cols())
+        .triangularView<Eigen::Upper>();
+  };
+  gap = factor(values.gap);
+  direct_gap = factor(values.direct_gap);
+  strain = factor(values.strain);
+  correction = factor(values.correction.leftCols(data + functions));
+  skew = factor(values.skew.middleCols(data, functions));
+  stress = factor(values.stress.middleCols(data, functions));
+  inner = values.inner;
+}
+
+}  // namespace signorini

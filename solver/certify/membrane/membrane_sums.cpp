@@ -1,0 +1,174 @@
+#include "certify/triangle_sums.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "certify/data/balanced_load.hpp"
+
+namespace signorini {
+namespace {
+
+std::vector<Point> points_of(const std::vector<WeightedPoint>& rule) {
+  std::vector<Point> points;
+  for (const auto& [point, weight] : rule) points.push_back(point);
+  return points;
+}
+
+}  // namespace
+
+TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
+  gap += other.gap;
+  direct_gap += other.direct_gap;
+  correction += other.correction;
+  skew += other.skew;
+  stress += other.stress;
+  energy += other.energy;
+  strain += other.strain;
+  span += other.span;
+  along += other.along;
+  known += other.known;
+  moved += other.moved;
+  slack += other.slack;
+  energy_slack += other.energy_slack;
+  return *this;
+}
+
+void TriangleSums::add_unknown_strain(double zeta) {
+  if (zeta == 0) return;
+  const auto norm = [this](double square) { return std::sqrt(square + slack); };
+  const double fields = norm(gap) + norm(direct_gap) + norm(correction) + 2 * norm(span) + 4 * norm(moved);
+  slack += zeta * (2 * fields + zeta);
+}
+
+MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given, bool balanced)
+    : points(std::move(given)), stress(spaces, points_of(points)) {
+  for (const auto& [point, weight] : points) {
+    if (balanced) balance.push_back(QuadraticBalance::reference_values(point));
+    basis.push_back(quadratic_basis(point));
+    gradients.push_back(quadratic_gradients(point));
+  }
+}
+
+MembraneSums::MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress,
+                           const AdmissiblePair& pair)
+    : problem_(problem), stress_(stress), pair_(pair), balance_(problem) {}
+
+MembraneSums::MembraneSums(const PatchPairs& pairs)
+    : MembraneSums(pairs.problem(), pairs.stress(), pairs.first()) {
+  second_ = &pairs.second();
+  change_ = &pairs.change();
+}
+
+/// Made once, by the order of the spaces.
+template <int Degree>
+const MembraneSums::Rule& MembraneSums::rule_of_degree(int order) {
+  static const std::array<Rule, 2> rules{
+      Rule(spaces_of(Scheme::nonconforming, 1), signorini::rule_of_degree(Degree), true),
+      Rule(spaces_of(Scheme::conforming, 1), signorini::rule_of_degree(Degree), true)};
+  return rules[order];
+}
+
+const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
+  const int order = problem_.spaces().order;
+  if (degree <= 5) return rule_of_degree<5>(order);
+  if (degree <= 6) return rule_of_degree<6>(order);
+  if (degree <= 8) return rule_of_degree<8>(order);
+  if (degree <= 10) return rule_of_degree<10>(order);
+  return degree <= 18 ? rule_of_degree<18>(order) : rule_of_degree<30>(order);
+}
+
+TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
+  const bool lifted = pair_.v.is_lifted(t), cubic = balance_(t).has_value();
+  const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
+  const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
+  TriangleSums sums;
+  const std::vector<LawPiece> pieces = laws.cut(t);
+  const auto degree_on = [&](const LawPiece& piece) {
+    return std::max(of_load, piece.degree_of_rule(of_fields, laws.tolerance()));
+  };
+  if (pieces.empty()) {
+    const int degree = degree_on(laws.whole(t));
+    integrate(t, rule_for(degree), laws.whole(t).error_of_rule(degree, of_fields), law, sums);
+  }
+  for (const LawPiece& piece : pieces) {
+    const int degree = degree_on(piece);
+    std::vector<WeightedPoint> points;
+    for (const auto& [point, weight] : signorini::rule_of_degree(degree))
+      points.push_back({piece.place(point), piece.place.share * weight});
+    integrate(t, Rule(problem_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields), law, sums);
+  }
+
+  // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
+  const ProjectedLoad& load = problem_.body[t];
+  const double area = AffineMap(problem_.mesh.corners(t)).determinant / 2;
+  sums.energy_slack += load.uncertain_work * pair_.v.largest_on(t);
+  const AdmissibleDisplacement::LiftRest rest = pair_.v.rest_of_lifts(t);
+  if (rest.slope > 0) {
+    const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
+    sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
+                         rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
+    sums.add_unknown_strain(zeta);
+  }
+  return sums;
+}
+
+void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const {
+  const AffineMap map(problem_.mesh.corners(t));
+  const Eigen::Matrix2d inverse = map.jacobian.inverse();
+  const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);
+  Quadratic<1> w = Quadratic<1>::Zero(), potential_of_tau = Quadratic<1>::Zero();
+  if (second_) {
+    w = v - second_->v.on<1>(t);
+    potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
+  }
+  const Quadratic<1> acting = quadratic_load<1>(problem_, t);
+  const std::optional<QuadraticBalance::Data> balance = balance_(t);
+  const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
+  double lifted_square = 0;
+  for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
+    const auto& [reference, share] = rule.points[q];
+    const auto& [compliance, stiffness] = law(map(reference));
+    const double weight = share * map.determinant;
+    const Tensor<1> sigma = rule.stress(q, map, stress_.col(t));
+    Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
+    Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
+    if (lifted) {
+      const double quadratic = value[0];
+      pair_.v.add_lifts<1>(t, reference, inverse, value, slope);
+      lifted_square += weight * (value[0] - quadratic) * (value[0] - quadratic);
+    }
+    Tensor<1> correction = Tensor<1>::Zero();
+    if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
+    if (change_) correction += rule.stress(q, map, change_->col(t));
+    if (balance) correction += map.jacobian * (rule.balance[q] * *balance) / map.determinant;
+    const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
+    const double of_strain = weight * slope.dot(stiffness * slope),
+                 of_correction = weight * correction.dot(compliance * correction),
+                 of_sigma = weight * sigma.dot(compliance * sigma);
+    sums.gap += weight * gap.dot(stiffness * gap);
+    sums.direct_gap += weight * direct_gap.dot(stiffness * direct_gap);
+    sums.correction += of_correction;
+    sums.stress += of_sigma;
+    sums.strain += of_strain / 2;
+    const double load = acting * rule.basis[q];
+    sums.energy += of_strain / 2 - weight * load * value[0];
+    double all_fields = 2 * of_sigma + 3 * of_correction + of_strain;
+    if (second_) {
+      const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),
+                      moved = stiffness * strain,
+                      tau = curl(inverse, potential_of_tau * rule.gradients[q].transpose());
+      const double of_moved = weight * strain.dot(moved);
+      sums.span += weight * (moved + tau).dot(compliance * (moved + tau));
+      sums.along += weight * (moved + tau).dot(compliance * correction);
+      sums.known += weight * gap.dot(moved - tau);
+      sums.moved += of_moved;
+      all_fields += 2 * of_moved + 2 * weight * tau.dot(compliance * tau);
+    }
+    sums.slack += 2 * error * all_fields;
+    sums.energy_slack += error * of_strain;
+  }
+  const ProjectedLoad& body = problem_.body[t];
+  sums.energy_slack += body.rest * std::sqrt(lifted_square);
+}
+
+}  // namespace signorini

@@ -1,0 +1,234 @@
+#include "certify/pressure/pressure_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+
+namespace signorini {
+namespace {
+
+class Chains {
+ public:
+  Chains(const Discretization& problem, const Eigen::MatrixXd& stress) : problem_(problem) {
+    int part = -1;
+    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
+      const auto& [a, b] = points(i);
+      const bool follows = part_of(i) == part && (a == all.back().back().end || b == all.back().back().end);
+      if (!follows) all.emplace_back();
+      const bool forward = follows ? a == all.back().back().end : !goes_on_from(a, i);
+      all.back().push_back(make_link(i, forward, stress));
+      part = part_of(i);
+    }
+  }
+
+  std::vector<Chain> all;
+
+ private:
+  int part_of(int i) const { return problem_.clearance.rows[problem_.clearance.edges[i].rows[0]].part; }
+  const std::array<int, 2>& points(int i) const {
+    return problem_.mesh.edges[problem_.clearance.edges[i].edge];
+  }
+
+  /// The next edge of the part begins in the point.
+  bool goes_on_from(int point, int i) const {
+    if (i + 1 == static_cast<int>(problem_.clearance.edges.size()) || part_of(i + 1) != part_of(i))
+      return false;
+    return points(i + 1)[0] == point || points(i + 1)[1] == point;
+  }
+
+  /// The forces from the outward fluxes; −σ_n is σ·n for the membrane. A constant pressure acts in equal
+  /// parts on both hats.
+  Link make_link(int number, bool forward, const Eigen::MatrixXd& stress) const {
+    const ContactEdge& contact = problem_.clearance.edges[number];
+    const auto& [a, b] = points(number);
+    Link link{number,       forward ? a : b, forward ? b : a,
+              contact.rows, {0, 0},          problem_.mesh.length(contact.edge)};
+    const int per_edge = problem_.spaces().traces_per_edge(), d = problem_.spaces().components;
+    const int t = problem_.mesh.edge_triangles[contact.edge][0];
+    const int first = problem_.mesh.local_edge(t, contact.edge) * per_edge;
+    for (int j = first; j < first + per_edge; j += d)
+      link.forces[problem_.traces.dof(t, j) % per_edge / d] =
+          d == 1 ? stress(j, t) : -contact.direction.dot(stress.col(t).segment<2>(j));
+    if (per_edge == d) link.forces = {link.forces[0] / 2, link.forces[0] / 2};
+    if (!forward) {
+      std::swap(link.forces[0], link.forces[1]);
+      std::swap(link.rows[0], link.rows[1]);
+    }
+    return link;
+  }
+
+  const Discretization& problem_;
+};
+
+/// The translations along x and y and the rotation about the middle of a chain, in units of its size.
+class ChainMotions {
+ public:
+  ChainMotions(const Discretization& problem, const Chain& chain)
+      : problem_(problem), middle_((at(chain.front().begin) + at(chain.back().end)) / 2) {
+    for (const Link& link : chain) size_ += link.length;
+  }
+
+  /// What each of them is along the direction of contact where the link begins and where it ends.
+  std::array<Eigen::Vector3d, 2> along(const Link& link) const {
+    const Vector& d = problem_.clearance.edges[link.number].direction;
+    std::array<Eigen::Vector3d, 2> motions;
+    for (int end = 0; end < 2; ++end) {
+      const Vector r = (at(end == 0 ? link.begin : link.end) - middle_) / size_;
+      motions[end] = {d.x(), d.y(), d.y() * r.x() - d.x() * r.y()};
+    }
+    return motions;
+  }
+
+  /// The work on them of the forces of a chain: its force and its moment.
+  Eigen::Vector3d work(const Chain& chain) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Link& link : chain) {
+      const auto [begin, end] = along(link);
+      sum += link.forces[0] * begin + link.forces[1] * end;
+    }
+    return sum;
+  }
+
+ private:
+  const Point& at(int point) const { return problem_.mesh.points[point]; }
+
+  const Discretization& problem_;
+  Point middle_;
+  double size_ = 0;
+};
+
+/// The forces of the linear pressure with the given values at the ends.
+std::array<double, 2> forces_of(double begin, double end, double length) {
+  return {length * (2 * begin + end) / 6, length * (begin + 2 * end) / 6};
+}
+
+}  // namespace
+
+std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress) {
+  return Chains(problem, stress).all;
+}
+
+double sum_of_forces(const Chain& chain) {
+  double sum = 0;
+  for (const Link& link : chain) sum += std::abs(link.forces[0]) + std::abs(link.forces[1]);
+  return sum;
+}
+
+AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
+                                 Transition transition, double least_share)
+    : problem_(problem), chain_(std::move(chain)), least_share_(least_share) {
+  if (problem.spaces().order == 1)
+    for (std::size_t node = 0; node <= chain_.size(); ++node) move_at_node(node, clearance, transition);
+  carry_deficits();
+  for (Link& link : chain_) spread(link);
+  if (std::ranges::all_of(chain_, [this](const Link& link) { return is_far(link); }))
+    for (Link& link : chain_) link.forces = {0, 0};
+}
+
+bool AdmissibleChain::is_held(bool at_end) const {
+  const int row = at_end ? chain_.back().rows[1] : chain_.front().rows[0];
+  return problem_.clearance.rows[row].unknown < 0;
+}
+
+/// Across a node, from the edge before it to the edge behind it.
+void AdmissibleChain::move(std::size_t node, double force) {
+  if (node > 0)
+    chain_[node - 1].forces[1] -= force;
+  else
+    force_of_support_ += force;
+  if (node < chain_.size()) chain_[node].forces[0] += force;
+}
+
+bool AdmissibleChain::is_open(std::size_t link, const Eigen::VectorXd& clearance) const {
+  return clearance[chain_[link].rows[0]] > 0 || clearance[chain_[link].rows[1]] > 0;
+}
+
+/// Its foundation was drawn near: rounding that pushes there would count with the whole of the true gap.
+bool AdmissibleChain::is_far(const Link& link) const {
+  const auto& rows = problem_.clearance.rows;
+  return rows[link.rows[0]].beyond > 0 && rows[link.rows[1]].beyond > 0;
+}
+
+/// The force on the hat of a node is not negative, and 0 if the node is open; neither of its edges is left
+/// with a negative share of it. Beyond the end of the chain Γ_D takes it.
+void AdmissibleChain::move_at_node(std::size_t node, const Eigen::VectorXd& clearance,
+                                   Transition transition) {
+  const bool first = node == 0, last = node == chain_.size();
+  if ((first || last) && !is_held(last)) return;
+  const double before = first ? 0 : chain_[node - 1].forces[1], behind = last ? 0 : chain_[node].forces[0];
+  const bool open_before = !first && is_open(node - 1, clearance),
+             open_behind = !last && is_open(node, clearance);
+  const bool empties = first || last || transition == Transition::free;
+  if (empties && open_behind != open_before)
+    move(node, open_behind ? -behind : before);
+  else if (behind < 0)
+    move(node, -behind);
+  else if (before < 0)
+    move(node, before);
+}
+
+/// What is still negative, from the tolerance of an iteration, is carried along the chain.
+void AdmissibleChain::carry_deficits() {
+  for (std::size_t i = 0; i + 1 < chain_.size(); ++i)
+    if (chain_[i].force() < 0 || is_far(chain_[i])) carry(i, i + 1);
+  for (std::size_t i = chain_.size(); i-- > 1;)
+    if (chain_[i].force() < 0 || is_far(chain_[i])) carry(i, i - 1);
+}
+
+/// Leaves the one edge with no force.
+void AdmissibleChain::carry(std::size_t from, std::size_t to) {
+  const double lack = chain_[from].force();
+  if (to > from)
+    move(to, lack);
+  else
+    move(from, -lack);
+}
+
+/// No end is left with less than its least share of the force.
+void AdmissibleChain::spread(Link& link) const {
+  const double force = std::max(0., link.force());
+  const double at_begin = problem_.spaces().order == 0
+                              ? force / 2
+                              : std::clamp(link.forces[0], least_share_ * force, (1 - least_share_) * force);
+  link.forces = {at_begin, force - at_begin};
+}
+
+bool AdmissibleChain::balance(const Chain& given, double rounding) {
+  if (sum_of_forces(given) <= rounding) {
+    for (Link& link : chain_) link.forces = {0, 0};
+    return true;
+  }
+  const ChainMotions motions(problem_, chain_);
+  // The forces of the pressure times the values at the ends of an edge.
+  const auto scaled = [&](const Link& link, double begin, double end) {
+    const auto [p, q] = link.pressure();
+    if (problem_.spaces().order == 0) begin = end = (begin + end) / 2;
+    return forces_of(p * begin, q * end, link.length);
+  };
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  for (const Link& link : chain_) {
+    const auto [begin, end] = motions.along(link);
+    for (int k = 0; k < 3; ++k) {
+      const auto [first, second] = scaled(link, begin[k], end[k]);
+      matrix.col(k) += first * begin + second * end;
+    }
+  }
+  // A motion along a straight chain does no work, and the rotation about the middle of an arc hardly any.
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposition;
+  decomposition.setThreshold(1e-13);
+  decomposition.compute(matrix);
+  const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_), mu = decomposition.solve(lack);
+  bool pushes = (matrix * mu - lack).norm() <= 10 * rounding;
+  for (Link& link : chain_) {
+    const auto [at_begin, at_end] = motions.along(link);
+    const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);
+    pushes = pushes && (link.force() == 0 || (begin >= 0 && end >= 0));
+    link.forces = scaled(link, begin, end);
+    pushes = pushes && (problem_.spaces().order == 0 ||
+                        std::min(link.forces[0], link.forces[1]) >= (1 - 1e-9) * least_share_ * link.force());
+  }
+  return pushes;
+}
+
+}  // namespace signorini

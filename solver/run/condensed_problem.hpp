@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+
+#include "contact/active_set.hpp"
+#include "contact/condense.hpp"
+#include "contact/residuals.hpp"
+#include "problem/settings.hpp"
+#include "result/summarize.hpp"
+
+namespace signorini {
+
+/// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
+/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `body` see
+/// accelerated_uzawa().
+ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
+                             const StateOfBody& body, const Eigen::VectorXd& start = {});
+
+/// A foundation is so far away beside the displacement that its gap would drown it.
+bool is_far(const ClearanceSpace& space, double displacement);
+
+/// A problem with everything but the contact unknowns eliminated, by an operator that was kept or is made.
+class CondensedProblem {
+ public:
+  /// Makes the operator on the mesh, or takes one that was kept; and takes one forward solve. Throws
+  /// Cancelled, SolveError and what Cholesky throws. The problem must outlive it.
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
+
+  const Discretization& discretization() const { return *discretization_; }
+  const std::shared_ptr<const Operator>& used_operator() const { return operator_; }
+  const ContactComplement& contact() const { return condensed_->contact(); }
+
+  /// Finds the clearances, beginning as find_clearance() does, and from them all fields. The method is one on
+  /// the contact complement, not the paper's form.
+  /// A foundation so far away that its gap would drown the displacement is drawn near: a gap that is out of reach is as
+  /// good as any other.
+  Fields find(const Method& method, Progress& progress, const Eigen::VectorXd& start = {});
+
+  /// The same with all that the fields tell, error bound included.
+  Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {});
+
+ private:
+  Fields find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start);
+  void condense(Progress& progress);
+
+  std::shared_ptr<const Operator> operator_;
+  bool reused_;
+  std::unique_ptr<Discretization> discretization_;
+  std::unique_ptr<CondensedContact> condensed_;
+};
+
+}  // namespace signorini

@@ -1,0 +1,207 @@
+#include "memory_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "certify/data/law_pieces.hpp"
+#include "certify/displacement/star_relaxation.hpp"
+#include "fem/load_projection.hpp"
+#include "fem/trace_space.hpp"
+#include "mesh/rectangle.hpp"
+#include "progress/observer.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr double kNumber = sizeof(double), kIndex = sizeof(int);
+/// A vector that grows has at most so many times the room that it needs.
+constexpr double kGrowth = 2;
+/// What the fronts and the allocator add to what is counted here.
+constexpr double kSlack = 1.15;
+/// Whether it is the same everywhere.
+bool is_uniform(const VectorField& field) {
+  return std::ranges::all_of(field.fields(), &Field::is_constant);
+}
+
+/// Squares of a size, each of a few triangles.
+struct Grid {
+  double x, y;
+  double width, height;  ///< of a square
+  bool is_regular;
+};
+
+Grid grid_of(const Problem& problem, double triangles) {
+  const auto* rectangle = std::get_if<Rectangle>(&problem.domain);
+  if (!rectangle || problem.mesh.adaptive) {
+    const double n = std::sqrt(triangles / 2);
+    return {n, n, 1, 1, false};
+  }
+  const Divisions squares = divisions(*rectangle, problem.mesh);
+  const double refined = std::exp2(problem.mesh.refine), x = squares.x * refined, y = squares.y * refined;
+  return {x, y, rectangle->size.x() / x, rectangle->size.y() / y, true};
+}
+
+/// A direction of the pieces into which a dissection cuts a grid.
+struct Direction {
+  double squares;        ///< of one piece
+  double pieces = 1;     ///< side by side
+  bool straight = true;  ///< all cuts so far went between squares
+
+  void halve(bool is_regular) {
+    straight = straight && is_regular && std::fmod(squares, 2) == 0;
+    squares /= 2;
+    pieces *= 2;
+  }
+  /// Of the two sides that a piece has along this direction's cuts those that are not on the boundary.
+  double inner_sides() const { return 2 * (pieces - 1) / pieces; }
+};
+
+/// What a cut through squares takes more edges, and what the sides of a piece have more, than those between
+/// squares.
+constexpr double kThrough = 1.5, kRagged = 1.3;
+
+struct Factor {
+  double panels = 0, fronts = 0;  ///< bytes of L, and of the numbers of its unknowns
+  double stacks = 0;              ///< bytes of what pieces leave, while it is made
+};
+
+/// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
+Factor factor(const Grid& grid, const Spaces& spaces, const SolveSizes& sizes) {
+  constexpr double least_in_leaf = 8;
+  const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
+  const int levels = static_cast<int>(std::log2(std::max(1., sizes.triangles / least_in_leaf)));
+  Direction x{grid.x}, y{grid.y};
+  Factor all;
+  for (int level = 0; level <= levels; ++level) {
+    const double pieces = std::exp2(level);
+    const double sides = (x.straight ? 1 : kRagged) * x.inner_sides() * y.squares +
+                         (y.straight ? 1 : kRagged) * y.inner_sides() * x.squares;
+    const bool along_x = x.squares * grid.width >= y.squares * grid.height;
+    double pivots = 0;
+    if (level < levels) {
+      Direction cut = along_x ? x : y;
+      cut.halve(grid.is_regular);
+      pivots = (cut.straight ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
+    } else {
+      const double triangles = sizes.triangles / pieces;
+      pivots =
+          std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
+    }
+    const double rest = sides * (per_edge + per_point) + sizes.contact / pieces;
+    all.panels += kNumber * pieces * pivots * (pivots + rest);
+    all.fronts += kIndex * pieces * (pivots + rest);
+    // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
+    const double most = (x.straight ? 1 : kRagged) * std::min(2., x.pieces - 1) * y.squares +
+                        (y.straight ? 1 : kRagged) * std::min(2., y.pieces - 1) * x.squares;
+    const double largest = most * (per_edge + per_point) + sizes.contact / x.pieces;
+    all.stacks += kNumber * (level > 0 ? 2 : 1) * largest * largest;
+    (along_x ? x : y).halve(grid.is_regular);
+  }
+  return all;
+}
+
+/// Of a triangle: points, corners, edges and who has them.
+constexpr double kMesh = 60;
+
+double numbers_of_fields(const Spaces& spaces) {
+  return spaces.stresses() + spaces.displacements();
+}
+
+double dofs_per_triangle(const Spaces& spaces) {
+  return 3. * spaces.traces_per_edge() + spaces.rotations();
+}
+
+/// A discretization of a triangle: its load, its degrees of freedom and those of half its edges' and points'
+/// sides.
+double discretization(const Problem& problem, const Spaces& spaces) {
+  const double dofs = 1.5 * spaces.traces_per_edge() + (spaces.rotations() ? 0.5 : 0);
+  const double own = dofs_per_triangle(spaces);
+  const double couple = spaces.leaves_couples() ? 1 : 0;
+  return kNumber * (spaces.displacements() + couple + dofs) + sizeof(CouplingDof) * dofs +
+         kIndex * (own + 1.5) + (is_uniform(problem.body) ? 0 : sizeof(ProjectedLoad));
+}
+
+/// The sum that is factored: numbers and place of a triangle, and its matrix where it shares it with no
+/// other.
+double element_sum(const Spaces& spaces, bool shares) {
+  const double own = dofs_per_triangle(spaces);
+  return kGrowth * (kIndex * (own + 1) + sizeof(Point) + (shares ? 0 : kNumber * own * own));
+}
+
+/// What a triangle takes while the pair of an elastic body is relaxed: its form where it shares it with no
+/// other, the slope, its unknowns, and the triangles at half a point.
+double relaxation(bool shares) {
+  constexpr double at_point = 100, unknowns = 4;
+  return kIndex + sizeof(TriangleForms::Vector) + unknowns * (2 * kNumber + kIndex) + at_point / 2 +
+         (shares ? 0 : sizeof(TriangleForms::Matrix));
+}
+
+/// What a triangle takes while the error is bounded: the admissible pair and its shares, and the law if it
+/// varies.
+double certificate(const Problem& problem, const Spaces& spaces, bool shares) {
+  constexpr double pair = 170, of_cut = 64;
+  return pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut) +
+         (spaces.components == 2 ? relaxation(shares) : 0);
+}
+
+/// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
+/// where its pressure changes, and the points of one triangle of an elastic body on which the law is cut into
+/// pieces. As measured.
+double tables(const Problem& problem, const Spaces& spaces) {
+  const bool is_membrane = spaces.components == 1;
+  const double of_shapes = 7.5e5, of_jumps = is_membrane ? 3.9e6 : 0.6e6, of_patches = 3e6, of_points = 30e6;
+  return of_shapes + (is_uniform(problem.body) ? 0 : of_jumps) +
+         (is_membrane && spaces.order == 1 ? of_patches : 0) +
+         (is_membrane || is_constant(problem.material) ? 0 : of_points);
+}
+
+}  // namespace
+
+double memory_of_solution(const Spaces& spaces, double triangles) {
+  const double per_point = 0.5 * (spaces.components + (spaces.rotations() ? 1 : 0));
+  const double at_centroid = spaces.components == 1 ? 2 : 4, share = 1;
+  return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
+}
+
+double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  const Grid grid = grid_of(problem, sizes.triangles);
+  const Factor made = factor(grid, spaces, sizes);
+  const double complement = kNumber * sizes.contact * sizes.contact;
+  const double kept = made.panels + kGrowth * made.fronts + complement +
+                      sizes.triangles * (kMesh + discretization(problem, spaces));
+  const double right = kNumber * sizes.system;
+  const bool shares = grid.is_regular && is_constant(problem.material);
+  const double factoring = made.stacks + complement + right + sizes.triangles * element_sum(spaces, shares);
+  // The fields as they were found, the solution, and what is made on the way to it.
+  const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
+  const double certifying =
+      2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
+      sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces, shares)) +
+      tables(problem, spaces);
+  // A mesh that refines itself keeps the solution of the level before.
+  const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) : 0;
+  return kSlack * (kept + std::max(factoring, certifying) + before);
+}
+
+double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  const Factor made = factor(grid_of(problem, sizes.triangles), spaces, {sizes.triangles, sizes.system, 0});
+  const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
+  // P and D, and the fields of an iterate.
+  const double iteration = kNumber * displacements * (own + displacements + 5);
+  return kSlack * (made.panels + kGrowth * made.fronts + made.stacks + 2 * kNumber * sizes.system +
+                   sizes.triangles *
+                       (kMesh + discretization(problem, spaces) + element_sum(spaces, false) + iteration));
+}
+
+double memory_of_history(int iterations) {
+  // Its own, the observer's, and a third while one of them grows, or goes into the result.
+  constexpr double histories = 3;
+  return histories * sizeof(Iteration) * std::exp2(std::ceil(std::log2(std::max(1, iterations))));
+}
+
+double memory_of_entry(double contact_unknowns) {
+  constexpr double sums = 1200, of_row = 56;
+  return kSlack * (sums + of_row * contact_unknowns);
+}
+
+}  // namespace signorini

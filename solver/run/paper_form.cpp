@@ -1,0 +1,53 @@
+#include "paper_form.hpp"
+
+#include "certify/certificate.hpp"
+#include "condensed_problem.hpp"
+#include "contact/paper_uzawa.hpp"
+#include "contact/rigid_motions.hpp"
+#include "data_check.hpp"
+#include "requested_mesh.hpp"
+#include "result/summarize.hpp"
+
+namespace signorini {
+namespace {
+
+Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& settings, Progress& progress) {
+  const Discretization problem(posed, mesh, &progress);
+  held_by_contact_alone(problem);
+  progress.enter(Phase::assemble);
+  UzawaIteration iteration(problem, std::get<PaperUzawa>(settings.method), progress);
+  progress.enter(Phase::iterate);
+  const Outcome outcome = iteration.run(progress);
+  progress.found();
+  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(), outcome};
+  return describe(problem, fields, settings, progress);
+}
+
+/// The certificate of the discrete solution, moved to the iterate.
+Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh, const Solution& iterate,
+                            Progress& progress) {
+  SilentObserver silent(progress.observer());
+  Progress within(silent, progress.time_left());
+  CondensedProblem condensed(problem, mesh, within);
+  const Fields fields = condensed.find(ActiveSet{}, within);
+  const Solution discrete = describe(condensed.discretization(), fields, {ActiveSet{}, std::nullopt}, within);
+  Certificate certificate = certify(condensed.discretization(), discrete, fields.coupling, within);
+  move_to(iterate.stress, condensed.discretization(), discrete, certificate, within);
+  return certificate;
+}
+
+}  // namespace
+
+Solution iterate_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
+  return iterate(problem, *requested_mesh(problem, progress), settings, progress);
+}
+
+Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
+  const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
+  require_sound_data(problem, *mesh, progress);
+  Solution solution = iterate(problem, *mesh, settings, progress);
+  add_bound(problem, [&] { return certify_iterate(problem, mesh, solution, progress); }, solution, progress);
+  return solution;
+}
+
+}  // namespace signorini

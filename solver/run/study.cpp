@@ -1,0 +1,218 @@
+#include "study.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "fem/quadrature.hpp"
+#include "fem/raviart_thomas.hpp"
+#include "mesh/domain_mesh.hpp"
+#include "result/true_errors.hpp"
+#include "solve.hpp"
+
+namespace signorini {
+namespace {
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+double largest_edge(const Mesh& mesh) {
+  double longest = 0;
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge)
+    longest = std::max(longest, mesh.length(edge));
+  return longest;
+}
+
+StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solution, Observer& observer) {
+  const Summary& summary = solution.summary;
+  StudyRow row;
+  row.scheme = solution.scheme;
+  row.size = largest_edge(solution.mesh);
+  row.triangles = summary.triangles;
+  row.unknowns = summary.unknowns;
+  row.energy = summary.energy;
+  row.error_bound = summary.error_bound;
+  row.errors = true_errors(problem, exact, solution, observer);
+  row.iterations = summary.iterations;
+  row.seconds = summary.timings.total;
+  return row;
+}
+
+StudyRow failed_row(Scheme scheme, const StudyMesh& mesh, const std::string& why) {
+  StudyRow row;
+  row.scheme = scheme;
+  row.error = mesh.name + ": " + why;
+  return row;
+}
+
+/// One solve of a study. Shows the observer of the whole its phases and levels, and makes a row of each
+/// level.
+class Run : public Observer {
+ public:
+  Run(Problem problem, const Exact& exact, Observer& whole)
+      : problem_(std::move(problem)), exact_(exact), whole_(whole) {}
+
+  void entered(Phase phase) override { whole_.entered(phase); }
+  bool keep_going() override { return whole_.keep_going(); }
+
+  void refined(const Level& level, const Solution& solution) override {
+    whole_.refined(level, solution);
+    if (solution.summary.outcome != Outcome::converged) return;
+    const Stopwatch aside;
+    StudyRow row = row_of(problem_, exact_, solution, whole_);
+    row.level = level.number;
+    row.seconds = level.seconds - aside_;
+    rows_.push_back(std::move(row));
+    aside_ += aside.seconds();
+  }
+
+  /// Adds its rows; the last one says so if the solve did not reach its end.
+  void add_to(std::vector<StudyRow>& rows, const StudyMesh& mesh, const Settings& settings) {
+    std::string failure;
+    try {
+      const Solution solution = solve(problem_, settings, *this);
+      if (!whole_.keep_going()) throw Cancelled();
+      failure = solution.summary.advice;
+      if (failure.empty() && !problem_.mesh.adaptive)
+        rows_.push_back(row_of(problem_, exact_, solution, whole_));
+    } catch (const SolveError& unsolvable) {
+      failure = unsolvable.what();
+    } catch (const InvalidProblem& only_here) {
+      failure = only_here.what();
+    }
+    std::ranges::move(rows_, std::back_inserter(rows));
+    if (!failure.empty()) rows.push_back(failed_row(problem_.scheme, mesh, failure));
+  }
+
+ private:
+  const Problem problem_;
+  const Exact& exact_;
+  Observer& whole_;
+  std::vector<StudyRow> rows_;
+  double aside_ = 0;  ///< seconds that the true errors took
+};
+
+Settings after(double seconds, Settings settings) {
+  settings.spent += seconds;
+  return settings;
+}
+
+/// A value of the quantity with the logarithms that a rate is made of.
+struct Measured {
+  double triangles, value;
+};
+
+std::optional<Measured> measured(const StudyRow& row, const Quantity& quantity) {
+  const auto value = row.error.empty() ? quantity(row) : std::nullopt;
+  if (!value || !(*value > 0)) return std::nullopt;
+  return Measured{std::log(static_cast<double>(row.triangles)), std::log(*value)};
+}
+
+}  // namespace
+
+std::vector<StudyRow> run_study(const Problem& problem, const Study& study, const Settings& settings,
+                                Observer& observer) {
+  const Stopwatch watch;
+  const std::size_t count = study.schemes.size() * study.meshes.size();
+  std::size_t done = 0;
+  std::vector<StudyRow> rows;
+  for (const Scheme scheme : study.schemes)
+    for (const StudyMesh& mesh : study.meshes) {
+      const Settings now = after(watch.seconds(), settings);
+      if (now.time_limit && *now.time_limit <= now.spent)
+        rows.push_back(failed_row(scheme, mesh,
+                                  "the time limit for the whole study was reached before: raise "
+                                  "solver.time_limit"));
+      else
+        Run(run_of(problem, mesh, scheme), study.exact, observer).add_to(rows, mesh, now);
+      observer.studied(++done, count);
+    }
+  return rows;
+}
+
+Problem run_of(const Problem& problem, const StudyMesh& mesh, Scheme scheme) {
+  Problem run = problem;
+  run.mesh = mesh.request;
+  run.scheme = scheme;
+  run.operator_key.clear();
+  return run;
+}
+
+std::vector<Fault> validate(const Problem& problem, const Study& study, const Settings& settings) {
+  std::vector<Fault> faults;
+  for (const StudyMesh& mesh : study.meshes) {
+    for (Fault& fault : validate_request(problem.domain, mesh.request))
+      faults.push_back({mesh.name, fault.detail});
+    if (mesh.request.adaptive && std::holds_alternative<PaperUzawa>(settings.method))
+      faults.push_back({mesh.name, paper_form_needs_one_mesh});
+  }
+  if (!faults.empty()) return faults;
+  const std::optional<Mesh> made = make_coarse_mesh(problem.domain);
+  if (!made) return faults;
+  const Mesh& coarse = *made;
+  const auto check = [&](const auto& evaluate, bool on_contact) {
+    try {
+      for (const BoundaryPart& part : coarse.boundary) {
+        if (!on_contact || !condition_on<Contact>(problem, part.name)) continue;
+        for (const int edge : part.edges)
+          for (const double s : edge_rule().points) {
+            const auto& [a, b] = coarse.edges[edge];
+            evaluate(Point((1 - s) * coarse.points[a] + s * coarse.points[b]));
+          }
+      }
+      for (int t = 0; t < static_cast<int>(coarse.triangles.size()); ++t) {
+        const AffineMap map(coarse.corners(t));
+        for (const Point& reference : triangle_rule().points) evaluate(map(reference));
+      }
+    } catch (const InvalidProblem& invalid) {
+      faults.insert(faults.end(), invalid.faults().begin(), invalid.faults().end());
+    }
+  };
+  if (const auto& displacement = study.exact.displacement)
+    for (int c = 0; c < displacement->size(); ++c)
+      check([&](const Point& x) { (*displacement)(c, x); }, true);
+  for (const Field& stress : study.exact.stress) check([&](const Point& x) { stress(x); }, false);
+  return faults;
+}
+
+std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size_t row,
+                                    const Quantity& quantity) {
+  const auto here = measured(rows[row], quantity);
+  if (!here) return std::nullopt;
+  for (std::size_t i = row; i-- > 0 && rows[i].scheme == rows[row].scheme;)
+    if (const auto before = measured(rows[i], quantity)) {
+      if (before->triangles == here->triangles) return std::nullopt;
+      return -2 * (here->value - before->value) / (here->triangles - before->triangles);
+    }
+  return std::nullopt;
+}
+
+std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme,
+                                  const Quantity& quantity) {
+  std::vector<Measured> all;
+  Measured mean{0, 0};
+  for (const StudyRow& row : rows)
+    if (const auto here = row.scheme == scheme ? measured(row, quantity) : std::nullopt) {
+      all.push_back(*here);
+      mean.triangles += here->triangles;
+      mean.value += here->value;
+    }
+  mean.triangles /= static_cast<double>(all.size());
+  mean.value /= static_cast<double>(all.size());
+  double along = 0, spread = 0;
+  for (const Measured& here : all) {
+    const double step = here.triangles - mean.triangles;
+    along += step * (here.value - mean.value);
+    spread += step * step;
+  }
+  if (!(spread > 0)) return std::nullopt;
+  return -2 * along / spread;
+}
+
+}  // namespace signorini
