@@ -33,7 +33,9 @@ void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::ve
   write_unknowns(out.key("unknowns"), estimate.unknowns);
   out.member("system", estimate.system);
   out.key("estimated").begin_object();
-  out.member("memory_bytes", std::round(memory_with_study(estimate, runs))).member("seconds", seconds).end_object();
+  out.member("memory_bytes", std::round(memory_with_study(estimate, runs)))
+      .member("seconds", seconds)
+      .end_object();
   if (!runs.empty()) out.member("study_runs", runs.size());
   if (!left.empty()) {
     out.key("notes").begin_array();

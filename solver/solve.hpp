@@ -29,13 +29,13 @@ inline constexpr const char* paper_form_needs_one_mesh =
     "out, "
     "or use active_set";
 
-/// Sizes, exact but for large polygons; memory, as a bound that is at most twice too large for exact sizes; time,
-/// roughly. Makes no large mesh. For a mesh that refines itself all of it is for the largest mesh that it may become,
-/// and the sizes are rough too.
+/// Sizes, exact but for large polygons; memory, as a bound that is at most twice too large for exact sizes;
+/// time, roughly. Makes no large mesh. For a mesh that refines itself all of it is for the largest mesh that
+/// it may become, and the sizes are rough too.
 Estimate estimate(const Problem& problem);
 
-/// The same for every run of a study, in the order in which they are solved. It ends behind the run with which
-/// they have more stress unknowns together than `enough`.
+/// The same for every run of a study, in the order in which they are solved. It ends behind the run with
+/// which they have more stress unknowns together than `enough`.
 std::vector<Estimate> estimate(const Problem& problem, const Study& study,
                                std::int64_t enough = std::numeric_limits<std::int64_t>::max());
 
@@ -48,9 +48,10 @@ double memory_with_study(const Estimate& problem, const std::vector<Estimate>& r
 /// Every fault of the problem, and where the method cannot do what it asks for.
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);
 
-/// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, those of the sweep too,
-/// and a body that cannot come to rest. Answers in sentences what it leaves to the solve: a mesh of more than
-/// `few_triangles`, and long formulas. The problem has no fault that validate() sees. Throws InvalidProblem and SolveError.
+/// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, those of the
+/// sweep too, and a body that cannot come to rest. Answers in sentences what it leaves to the solve: a mesh
+/// of more than `few_triangles`, and long formulas. The problem has no fault that validate() sees. Throws
+/// InvalidProblem and SolveError.
 std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Variation>& sweep = {});
 
 /// Solves Problem 4.1 of the paper for the problem.

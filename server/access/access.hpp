@@ -20,7 +20,8 @@ struct Access {
   /// Throws HttpError 421 or 403 if a page of another site may be behind the request.
   void require_known_host(const Request& request) const { hosts.require(request, cors); }
 
-  /// Who sends it, if it may do so. Throws HttpError 401 if no token is shown, 403 if it is not for this scope.
+  /// Who sends it, if it may do so. Throws HttpError 401 if no token is shown, 403 if it is not for this
+  /// scope.
   Identity require(const Request& request, Scope scope) const;
 
   /// Throws HttpError 429 if the name asks too often.

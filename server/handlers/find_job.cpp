@@ -27,7 +27,8 @@ const std::string& id_of(const Request& request) {
 HttpError unknown_solve() {
   return {404,
           {"unknown-solve", "Unknown solve",
-           "There is no solve with this id that this client may see; it may have been deleted, or dropped to keep "
+           "There is no solve with this id that this client may see; it may have been deleted, or dropped to "
+           "keep "
            "within --keep-bytes or --keep-seconds."}};
 }
 
@@ -51,7 +52,8 @@ JobWithResult with_result(Service& service, Job job) {
   std::optional<JobResult> result = service.results.get(job.id);
   if (!result) throw unknown_solve();
   // What is stored may turn out to be damaged when it is read.
-  if (job.verdict.summary && !result->solution) throw without_result(service.store.find(job.id).value_or(job));
+  if (job.verdict.summary && !result->solution)
+    throw without_result(service.store.find(job.id).value_or(job));
   return {std::move(job), std::move(*result)};
 }
 

@@ -22,13 +22,14 @@ struct JobWithResult {
   JobResult result;
 };
 
-/// The same, if it has a solution. Throws HttpError 404, 409 if it has not ended, 410 if it ended without one.
+/// The same, if it has a solution. Throws HttpError 404, 409 if it has not ended, 410 if it ended without
+/// one.
 Job find_solved(Service& service, const Request& request);
 
 JobWithResult find_job_with_result(Service& service, const Request& request);
 
-/// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile, 410 if what was
-/// stored is damaged.
+/// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile, 410 if what
+/// was stored is damaged.
 JobWithResult with_result(Service& service, Job job);
 
 }  // namespace signorini::server

@@ -17,9 +17,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto tick = 50ms;     // how late an event may be
+constexpr auto tick = 50ms;                  // how late an event may be
 constexpr auto patience_with_readers = 30s;  // with a client that takes nothing
-constexpr int turns = 16;       // of one subscriber before the others have theirs
+constexpr int turns = 16;                    // of one subscriber before the others have theirs
 
 }  // namespace
 

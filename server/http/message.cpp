@@ -162,7 +162,8 @@ void read_target(Message& message) {
 /// The parser has refused what is no number, but takes the same one several times.
 void check_length(const Message& message) {
   const auto [first, last] = message.headers.equal_range("Content-Length");
-  const bool sound = first == last || (std::next(first) == last && std::ranges::all_of(first->second, is_digit));
+  const bool sound =
+      first == last || (std::next(first) == last && std::ranges::all_of(first->second, is_digit));
   if (!sound) throw ambiguous_length();
 }
 

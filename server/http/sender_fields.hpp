@@ -7,7 +7,8 @@
 
 namespace signorini::server {
 
-/// What the lines that are logged for a request say of who sends it: `address`, and `client` if a token names it.
+/// What the lines that are logged for a request say of who sends it: `address`, and `client` if a token names
+/// it.
 class SenderFields {
  public:
   explicit SenderFields(const Request& request) : address_("address", request.remote_address) {

@@ -19,9 +19,9 @@ struct OperatorFigures {
   std::size_t bytes = 0;
 };
 
-/// The operators of recent solves, shared by all workers (`--cache-bytes`). When they hold more than the limit
-/// together, those that have not been used for the longest time are dropped; one that is larger than the limit is
-/// not kept at all.
+/// The operators of recent solves, shared by all workers (`--cache-bytes`). When they hold more than the
+/// limit together, those that have not been used for the longest time are dropped; one that is larger than
+/// the limit is not kept at all.
 class KeptOperators : public OperatorCache {
  public:
   explicit KeptOperators(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}

@@ -16,9 +16,9 @@ namespace signorini::server {
 struct Progress {
   std::optional<Phase> phase;
   int iteration = 0;
-  std::optional<double> residual;    ///< relative; see residual()
-  std::optional<Level> level;        ///< the last mesh that was solved, of one that refines itself
-  std::size_t swept = 0, sweep = 0;  ///< entries of a sweep that are done, and all of them
+  std::optional<double> residual;      ///< relative; see residual()
+  std::optional<Level> level;          ///< the last mesh that was solved, of one that refines itself
+  std::size_t swept = 0, sweep = 0;    ///< entries of a sweep that are done, and all of them
   std::size_t studied = 0, study = 0;  ///< the same for the runs of a study
 };
 

@@ -19,9 +19,9 @@ struct Certificate {
   bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }
 };
 
-/// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium with Πf and Πt
-/// whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from(). Data that turn out to be unsound in a
-/// point that the discrete problem does not ask leave it without a bound.
+/// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium
+/// with Πf and Πt whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from(). Data that
+/// turn out to be unsound in a point that the discrete problem does not ask leave it without a bound.
 ///
 /// `coupling`: the unknowns of the trace space.
 Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,

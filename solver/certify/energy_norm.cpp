@@ -7,12 +7,12 @@
 namespace signorini {
 namespace {
 
-/// ∫ τ·Cτ over the piece of a triangle by a rule, with what that may miss: of two quadratic forms that differ by at
-/// most η times themselves each integral is at most (1 + η) / (1 − η) times the other's; where η tells too little, as on
-/// a cell through which the law jumps, C is at most the softest.
+/// ∫ τ·Cτ over the piece of a triangle by a rule, with what that may miss: of two quadratic forms that differ
+/// by at most η times themselves each integral is at most (1 + η) / (1 − η) times the other's; where η tells
+/// too little, as on a cell through which the law jumps, C is at most the softest.
 template <int D>
-double square_on(const Discretization& problem, const Eigen::MatrixXd& stress, int t, const TrianglePiece& place,
-                 const LawPiece& piece, double tolerance, LawField<D>& law) {
+double square_on(const Discretization& problem, const Eigen::MatrixXd& stress, int t,
+                 const TrianglePiece& place, const LawPiece& piece, double tolerance, LawField<D>& law) {
   const int of_fields = problem.spaces().order + 1;
   const int degree = piece.degree_of_rule(of_fields, tolerance);
   const double error = piece.error_of_rule(degree, of_fields);
@@ -25,7 +25,8 @@ double square_on(const Discretization& problem, const Eigen::MatrixXd& stress, i
   for (std::size_t q = 0; q < points.size(); ++q) {
     const Tensor<D> tau = values(static_cast<int>(q), map, stress.col(t));
     const double weight = rule_of_degree(degree)[q].weight * place.share * map.determinant;
-    sum += weight * (is_known ? tau.dot(law(map(points[q])).compliance * tau) : piece.softest * tau.squaredNorm());
+    sum += weight *
+           (is_known ? tau.dot(law(map(points[q])).compliance * tau) : piece.softest * tau.squaredNorm());
   }
   return is_known ? sum * (1 + error) / (1 - error) : sum;
 }
@@ -41,7 +42,8 @@ Eigen::VectorXd squares(const Discretization& problem, const Eigen::MatrixXd& st
     const std::vector<LawPiece> cut = laws.cut(t);
     const std::span<const LawPiece> pieces = cut.empty() ? std::span(&laws.whole(t), 1) : std::span(cut);
     for (const LawPiece& piece : pieces)
-      all[t] += square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, laws.tolerance(), law);
+      all[t] +=
+          square_on<D>(problem, stress, t, cut.empty() ? whole : piece.place, piece, laws.tolerance(), law);
   }
   return all;
 }

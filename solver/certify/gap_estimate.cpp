@@ -5,7 +5,8 @@
 namespace signorini {
 namespace {
 
-/// Not the centroid, in which the gradient of v is better than elsewhere, nor the edges, on which the law may jump.
+/// Not the centroid, in which the gradient of v is better than elsewhere, nor the edges, on which the law may
+/// jump.
 const std::vector<Point> kPoints{Point(1. / 6, 1. / 6), Point(2. / 3, 1. / 6), Point(1. / 6, 2. / 3)};
 
 template <int D>
@@ -28,7 +29,8 @@ double estimate(const Discretization& problem, const Eigen::MatrixXd& stress, co
     for (std::size_t q = 0; q < kPoints.size(); ++q) {
       const auto& [compliance, stiffness] = law(map(kPoints[q]));
       const Tensor<D> sigma = symmetric<D>(values(static_cast<int>(q), map, stress.col(t))),
-                      strain = symmetric<D>(gradient<D>(inverse, own * quadratic_gradients(kPoints[q]).transpose())),
+                      strain = symmetric<D>(
+                          gradient<D>(inverse, own * quadratic_gradients(kPoints[q]).transpose())),
                       difference = compliance * sigma - strain;
       gap += map.determinant * difference.dot(stiffness * difference);
       size += map.determinant * sigma.dot(compliance * sigma);
@@ -39,8 +41,8 @@ double estimate(const Discretization& problem, const Eigen::MatrixXd& stress, co
 
 }  // namespace
 
-double estimate_gap(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissibleDisplacement& v,
-                    Progress& progress) {
+double estimate_gap(const Discretization& problem, const Eigen::MatrixXd& stress,
+                    const AdmissibleDisplacement& v, Progress& progress) {
   return problem.spaces().components == 1 ? estimate<1>(problem, stress, v, progress)
                                           : estimate<2>(problem, stress, v, progress);
 }

@@ -47,9 +47,9 @@ std::vector<Point> triangle_points();
 using CornerWeights = Eigen::Matrix<double, 3, TriangleRule::size>;
 CornerWeights corner_weights();
 
-/// A modulus as a linear function on a triangle, by its values at the corners: nearest in L2 to the one that is known in
-/// the points of the rule. Where a modulus jumps, what is nearest may be negative in a corner, and an energy with it has
-/// no minimum: then it is the mean.
+/// A modulus as a linear function on a triangle, by its values at the corners: nearest in L2 to the one that
+/// is known in the points of the rule. Where a modulus jumps, what is nearest may be negative in a corner,
+/// and an energy with it has no minimum: then it is the mean.
 template <typename Matrix>
 std::array<Matrix, 3> linear_modulus(const std::array<Matrix, TriangleRule::size>& at_points) {
   constexpr double least = 0.05;  // of the mean

@@ -74,9 +74,8 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
     double o = 0;
-    of_jumps.share(std::max(1, jumps), [&](CellBudget& budget) {
-      o = oscillation<D>(problem, t, pair.pressure, laws, budget);
-    });
+    of_jumps.share(std::max(1, jumps),
+                   [&](CellBudget& budget) { o = oscillation<D>(problem, t, pair.pressure, laws, budget); });
     jumps -= problem.body[t].jumps;
     all += own;
     all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));

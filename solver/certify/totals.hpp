@@ -28,21 +28,23 @@ struct Totals {
 
  private:
   template <int D>
-  void add_work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v, const Owners& owners);
+  void add_work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v,
+                            const Owners& owners);
 };
 
-/// The least of ‖δ − θ s‖ R + θ K over θ ∈ [0, 1], from ‖δ‖², ‖s‖², (s, δ) and K, each of which may be larger by the
-/// slack.
+/// The least of ‖δ − θ s‖ R + θ K over θ ∈ [0, 1], from ‖δ‖², ‖s‖², (s, δ) and K, each of which may be larger
+/// by the slack.
 double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known,
                           double slack = 0);
 
-/// The bound of THEORY.md, Theorems 2 and 3, whose proofs stand there: with G and D the norms of σ* − E ε(v) and of
-/// σ* − sym σ_h, both with what makes up for the oscillation o_T of each triangle and for carried loads, c = 2 <p*, g −
-/// v_n> and R² = G² + 2 c,
+/// The bound of THEORY.md, Theorems 2 and 3, whose proofs stand there: with G and D the norms of σ* − E ε(v)
+/// and of σ* − sym σ_h, both with what makes up for the oscillation o_T of each triangle and for carried
+/// loads, c = 2 <p*, g − v_n> and R² = G² + 2 c,
 ///
 ///     value²  =  c + (G² + D² + ‖sym σ_h − E ε(v)‖²) / 2 + min(D R, M) + ‖skew σ_h‖²,
 ///
-/// M the least of least_over_the_way() against the second pair. The energies are J(v) and J(v) − (G² + c) / 2.
+/// M the least of least_over_the_way() against the second pair. The energies are J(v) and J(v) − (G² + c)
+/// / 2.
 ///
 /// Each sum counts with its slack in the direction that makes the bound larger.
 ErrorBound bound_from(const Totals& totals);

@@ -25,8 +25,8 @@ struct TriangleSums {
   double known = 0;       ///< (σ* − E ε(v), E ε(w) − τ)_C
   double moved = 0;       ///< ‖ε(w)‖²_E
 
-  /// What each of the above, and every product of its fields, may be off by at most: for the law is no polynomial, and
-  /// of some of v there is but a bound.
+  /// What each of the above, and every product of its fields, may be off by at most: for the law is no
+  /// polynomial, and of some of v there is but a bound.
   double slack = 0;
   double energy_slack = 0;  ///< and ½ ‖ε(v)‖²_E − (f, v)
 
@@ -38,8 +38,8 @@ struct TriangleSums {
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v
 /// is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 ///
-/// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has beyond that
-/// counts twice, in the integral and in the rule, whose weights are positive.
+/// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has
+/// beyond that counts twice, in the integral and in the rule, whose weights are positive.
 class MembraneSums {
  public:
   MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
@@ -102,8 +102,8 @@ class ElasticSums {
   TriangleSums by_points(const AffineMap& map, const MacroRule& rule, Given given, double error_of_whole,
                          LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
-  void add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given, const Inner& inner,
-                        TriangleSums& sums) const;
+  void add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+                        const Inner& inner, TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
   const Discretization& problem_;

@@ -65,7 +65,8 @@ Eigen::VectorXd inverse_diagonal(const Eigen::MatrixXd& s) {
 
 }  // namespace
 
-MultilevelScaling::MultilevelScaling(const Eigen::MatrixXd& s, Progress& progress) : s_(s), progress_(progress) {
+MultilevelScaling::MultilevelScaling(const Eigen::MatrixXd& s, Progress& progress)
+    : s_(s), progress_(progress) {
   Eigen::MatrixXd coarser;
   for (const Eigen::MatrixXd* level = &s;; level = &coarser) {
     const std::vector<int> aggregate = pairs(*level, progress_);

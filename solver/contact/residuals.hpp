@@ -24,8 +24,8 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
                                    const Eigen::VectorXd& weight, double mean_stress);
 
 /// ‖σ_h‖ / √|Ω|, or what counts as no stress at all: a body that moves without strain has only rounding for
-/// stress, and nothing to compare it with but what its displacement and clearance might have made. `clearance` has an
-/// entry a row.
+/// stress, and nothing to compare it with but what its displacement and clearance might have made.
+/// `clearance` has an entry a row.
 double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
                    const Eigen::MatrixXd& displacement, const Eigen::VectorXd& clearance);
 

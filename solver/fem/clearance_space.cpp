@@ -146,12 +146,13 @@ class Builder {
     const double gap = values_at_end(condition.gap, EdgeLine(mesh_, edge), end, rounding_of(*held)).upper();
     if (!(gap < *held - rounding_of(gap))) return;
     const bool is_fixed = held_.fixed.contains(node);
-    throw InvalidProblem({{"/boundary/" + mesh_.boundary[part].name + "/gap",
-                           "the contact can never be met at " + to_string(mesh_.points[node]) + ", where a " +
-                               (is_fixed ? "fixed part" : "roller") +
-                               " beside it holds the body beyond the gap, and no displacement jumps: raise the gap "
-                               "there" +
-                               (is_fixed ? " or the fixed value" : "")}});
+    throw InvalidProblem(
+        {{"/boundary/" + mesh_.boundary[part].name + "/gap",
+          "the contact can never be met at " + to_string(mesh_.points[node]) + ", where a " +
+              (is_fixed ? "fixed part" : "roller") +
+              " beside it holds the body beyond the gap, and no displacement jumps: raise the gap "
+              "there" +
+              (is_fixed ? " or the fixed value" : "")}});
   }
 
   /// λ = g − u_n is known there; where the gap jumps in the node it may seem to be negative.

@@ -64,12 +64,13 @@ struct ClearanceSpace {
   bool is_touched_too_early(const Eigen::VectorXd& unknown) const;
 };
 
-/// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a contact part begins beside a part that holds the body
-/// beyond the gap, a fixed one, or a roller along the same line: v_n would have to jump there, and no displacement of
-/// finite energy does. Where the directions of contact and roller differ, a displacement may meet both.
+/// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a contact part begins beside a part that
+/// holds the body beyond the gap, a fixed one, or a roller along the same line: v_n would have to jump there,
+/// and no displacement of finite energy does. Where the directions of contact and roller differ, a
+/// displacement may meet both.
 ///
-/// `reach`: ClearanceSpace::reach. As long as nothing touches a foundation that was drawn near, the displacement is the
-/// same, and it keeps the digits that it would lose beside a large gap.
+/// `reach`: ClearanceSpace::reach. As long as nothing touches a foundation that was drawn near, the
+/// displacement is the same, and it keeps the digits that it would lose beside a large gap.
 ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh,
                                     double reach = std::numeric_limits<double>::infinity());
 

@@ -42,7 +42,8 @@ std::vector<WeightedPoint> collapsed_rule(int n) {
 }
 
 const std::vector<WeightedPoint>& rule_of_degree(int degree) {
-  static const std::vector<WeightedPoint> five = weighted(triangle_rule()), six = weighted(fine_triangle_rule()),
+  static const std::vector<WeightedPoint> five = weighted(triangle_rule()),
+                                          six = weighted(fine_triangle_rule()),
                                           eight = weighted(finest_triangle_rule()), ten = collapsed_rule(6),
                                           eighteen = collapsed_rule(10), thirty = collapsed_rule(16);
   if (degree <= 5) return five;

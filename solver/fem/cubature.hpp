@@ -22,8 +22,8 @@ std::vector<WeightedPoint> weighted(const RuleOnTriangle<Points>& rule) {
   return all;
 }
 
-/// n² points, of Gauss and Legendre along x and along the lines from the corner (1, 0): exact for polynomials of
-/// degree 2n − 2.
+/// n² points, of Gauss and Legendre along x and along the lines from the corner (1, 0): exact for polynomials
+/// of degree 2n − 2.
 std::vector<WeightedPoint> collapsed_rule(int n);
 
 /// The rules that are exact for the degree, the smallest of them.

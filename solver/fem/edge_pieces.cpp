@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kDegree = EdgePiece::kDegree;
 
-/// x, y and the normal along the edge, or along the arc X = c + R (p − c) / |p − c| over the points p of its chord.
+/// x, y and the normal along the edge, or along the arc X = c + R (p − c) / |p − c| over the points p of its
+/// chord.
 Enclosure<Series> along(const EdgeLine& edge, const Interval& s, int order) {
   const Mesh& mesh = edge.mesh;
   const Point &from = mesh.points[mesh.edges[edge.edge][0]], &to = mesh.points[mesh.edges[edge.edge][1]];
@@ -31,16 +32,21 @@ Enclosure<Series> along(const EdgeLine& edge, const Interval& s, int order) {
   const Point& centre = mesh.circles[circle].centre;
   const double radius = mesh.circles[circle].radius;
   const auto constant = [&](double value) { return Series(order, value); };
-  const auto from_centre = [&](int i) { return smooth(Operation::subtract, on_chord(i), constant(centre[i])); };
+  const auto from_centre = [&](int i) {
+    return smooth(Operation::subtract, on_chord(i), constant(centre[i]));
+  };
   const Series x = from_centre(0), y = from_centre(1), two = constant(2);
   const Series distance = smooth(Operation::sqrt, smooth(Operation::add, smooth(Operation::power, x, two),
                                                          smooth(Operation::power, y, two)));
   const double sign = (edge.at(0.5) - centre).dot(edge.normal) > 0 ? 1 : -1;
   const auto outward = [&](const Series& own) { return smooth(Operation::divide, own, distance); };
   const auto on_arc = [&](const Series& own, int i) {
-    return smooth(Operation::add, constant(centre[i]), smooth(Operation::multiply, constant(radius), outward(own)));
+    return smooth(Operation::add, constant(centre[i]),
+                  smooth(Operation::multiply, constant(radius), outward(own)));
   };
-  const auto normal = [&](const Series& own) { return smooth(Operation::multiply, constant(sign), outward(own)); };
+  const auto normal = [&](const Series& own) {
+    return smooth(Operation::multiply, constant(sign), outward(own));
+  };
   return {on_arc(x, 0), on_arc(y, 1), normal(x), normal(y)};
 }
 
@@ -61,7 +67,8 @@ EdgePiece interpolated(const Field& field, const EdgeLine& edge) {
   const Eigen::Matrix<double, kDegree + 1, 1> c = powers.partialPivLu().solve(values);
   static_assert(EdgeRule::size == kDegree + 1);
   EdgePiece piece{0, 1};
-  for (int k = 0; k <= kDegree; ++k) piece.coefficients[k] = field.is_quadratic_on_edges() && k > 2 ? 0 : c[k];
+  for (int k = 0; k <= kDegree; ++k)
+    piece.coefficients[k] = field.is_quadratic_on_edges() && k > 2 ? 0 : c[k];
   return piece;
 }
 
@@ -99,7 +106,8 @@ Series series_on(const Field& field, const EdgeLine& edge, const Interval& s, in
   const Series line = Series::line(order, s - piece.middle(), 1);
   Series all(order, piece.coefficients[kDegree]);
   for (int k = kDegree; k-- > 0;)
-    all = smooth(Operation::add, smooth(Operation::multiply, all, line), Series(order, piece.coefficients[k]));
+    all =
+        smooth(Operation::add, smooth(Operation::multiply, all, line), Series(order, piece.coefficients[k]));
   return all;
 }
 
@@ -107,7 +115,8 @@ Interval values_at_end(const Field& field, const EdgeLine& edge, double s, doubl
   const Formula* formula = field.formula();
   if (!formula) return edge.value(field, s);
   constexpr double hardly = 1e-9;
-  const Interval beside = enclose(*formula, edge, s == 0 ? Interval(0, hardly) : Interval(1 - hardly, 1), 0)[0];
+  const Interval beside =
+      enclose(*formula, edge, s == 0 ? Interval(0, hardly) : Interval(1 - hardly, 1), 0)[0];
   const auto [x, normal] = edge.mesh.on_boundary(edge.edge, s);
   const double value = (*formula)(x.x(), x.y(), normal.x(), normal.y());
   if (!is_known(beside)) return std::isfinite(value) ? Interval(value) : kAnything;

@@ -18,7 +18,7 @@ struct ElementMatrices {
 
 /// What the body load does to one triangle.
 struct TriangleLoad {
-  LocalVector force;    ///< F = (f, v_i)
+  LocalVector force;  ///< F = (f, v_i)
   double couple = 0;  ///< of an elastic body: ∫ (x − x_T)^⊥ · f about the centroid x_T
 };
 

@@ -24,16 +24,16 @@ struct Projection {
   bool is_finite = true;
 };
 
-/// What integrals may be off by, a value of f: where f is smooth a few cells meet the fine one; where it is not, so many
-/// as that would take are not worth it.
+/// What integrals may be off by, a value of f: where f is smooth a few cells meet the fine one; where it is
+/// not, so many as that would take are not worth it.
 struct ProjectionTolerance {
   double fine, rough;
   double rounding = 0;  ///< of values, up to which it counts as none
 };
 
 /// As far as the budget lasts. What is no formula is taken for what it is in the points of a rule.
-Projection project(const Field& field, const std::array<Point, 3>& corners, const ProjectionTolerance& tolerance,
-                   CellBudget& budget);
+Projection project(const Field& field, const std::array<Point, 3>& corners,
+                   const ProjectionTolerance& tolerance, CellBudget& budget);
 
 /// Π₁ of a polynomial of P2, and its norm.
 Projection::Nodes linear_part(const Projection::Nodes& quadratic);

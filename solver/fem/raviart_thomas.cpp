@@ -49,8 +49,7 @@ AffineMap::AffineMap(const std::array<Point, 3>& corners) : origin(corners[0]) {
 
 RaviartThomas::RaviartThomas(int order, bool with_bubble) : order_(order), with_bubble_(with_bubble) {
   const int monomial_fields = size() - (with_bubble ? 1 : 0);
-  coefficients_ =
-      functionals(monomial_fields, [&](const Point& p) { return monomials(order, p); }).inverse();
+  coefficients_ = functionals(monomial_fields, [&](const Point& p) { return monomials(order, p); }).inverse();
 }
 
 template <typename Fields>

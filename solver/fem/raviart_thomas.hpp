@@ -54,8 +54,8 @@ class RaviartThomas {
   /// Column j: function j on the triangle at the image of the reference point.
   LocalVectors values(const AffineMap& map, const Point& reference) const;
 
-  /// The functionals of a field on the triangle: the coefficients of its interpolant, which is the field itself
-  /// if it lies in RT_k. Not for a row with a bubble.
+  /// The functionals of a field on the triangle: the coefficients of its interpolant, which is the field
+  /// itself if it lies in RT_k. Not for a row with a bubble.
   LocalVector interpolate(const AffineMap& map, const std::function<Vector(const Point& x)>& field) const;
 
  private:

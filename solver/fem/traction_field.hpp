@@ -8,8 +8,8 @@
 
 namespace signorini {
 
-/// The traction t on one edge of Γ_F as scheme and certificate see it, by its projection Πt onto P2. The integrals are
-/// known as those of a load are: ProjectedLoad.
+/// The traction t on one edge of Γ_F as scheme and certificate see it, by its projection Πt onto P2. The
+/// integrals are known as those of a load are: ProjectedLoad.
 struct ProjectedTraction {
   /// Πt at the first point of the edge, at the second, and in the middle; a row a component.
   Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 2, 3> balanced;

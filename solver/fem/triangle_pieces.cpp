@@ -31,11 +31,12 @@ struct Values {
 
 using Assumptions = std::vector<Enclosure<TaylorModel>::Assumption>;
 
-Values evaluate(std::span<const Field* const> fields, const Corners& corners, const Assumptions& assumptions) {
+Values evaluate(std::span<const Field* const> fields, const Corners& corners,
+                const Assumptions& assumptions) {
   const auto& [a, b, c] = corners;
   Enclosure<TaylorModel> enclosure{TaylorModel::linear({a.x(), b.x(), c.x()}),
-                                   TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.), TaylorModel(0.),
-                                   assumptions};
+                                   TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.),
+                                   TaylorModel(0.), assumptions};
   Values values;
   for (const Field* field : fields)
     values.models.push_back(field->formula() ? field->formula()->evaluate(enclosure)
@@ -81,7 +82,12 @@ class Cutter {
  public:
   Cutter(std::span<const Field* const> fields, const Corners& corners, const Acceptance& accept,
          CellBudget& budget, const std::function<void(const TrianglePiece&)>& visit, const Settled& settled)
-      : fields_(fields), corners_(corners), accept_(accept), budget_(budget), visit_(visit), settled_(settled) {
+      : fields_(fields),
+        corners_(corners),
+        accept_(accept),
+        budget_(budget),
+        visit_(visit),
+        settled_(settled) {
     for (int i = 0; i < 2; ++i)
       box_[i] = {std::min({corners[0][i], corners[1][i], corners[2][i]}),
                  std::max({corners[0][i], corners[1][i], corners[2][i]})};
@@ -144,7 +150,8 @@ class Cutter {
     Cell cell{corners, depth, area(corners[0], corners[1], corners[2]), {}, {}};
     if (cell.share == 0 || (settled_ && settled_(corners, cell.share))) return;
     evaluate(cell);
-    if (accept_(cell.values.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest) return visit(cell);
+    if (accept_(cell.values.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest)
+      return visit(cell);
     open_.push(std::move(cell));
   }
 
@@ -185,17 +192,19 @@ class Cutter {
         for (std::size_t i = 0; i < fields_.size(); ++i)
           if (const Formula* formula = fields_[i]->formula()) {
             bool undecided = false;
-            sum += doubt(range(series_on_triangle(*formula, physical(half), 0, undecided)), scales_[i], cell.share);
+            sum += doubt(range(series_on_triangle(*formula, physical(half), 0, undecided)), scales_[i],
+                         cell.share);
           }
       return sum;
     };
     const std::array<Doubt, 3> all{left(0), left(1), left(2)};
-    const int longest = longest_side(cell), least = std::ranges::min({0, 1, 2}, {}, [&](int e) { return all[e]; });
+    const int longest = longest_side(cell),
+              least = std::ranges::min({0, 1, 2}, {}, [&](int e) { return all[e]; });
     return all[least] < all[longest] ? least : longest;
   }
 
-  /// Both sides of the line where the argument is 0 but for what is not linear in it, and between them the strip where its
-  /// sign is not known. Returns false where that would be too wide.
+  /// Both sides of the line where the argument is 0 but for what is not linear in it, and between them the
+  /// strip where its sign is not known. Returns false where that would be too wide.
   bool cut_along(const Cell& cell) {
     const TaylorModel::LinearPart part = cell.values.undecided->linear_part();
     const auto& [a, b, c] = part.at_corners;
@@ -242,13 +251,15 @@ class Cutter {
 
 }  // namespace
 
-std::vector<Point> clip(const std::vector<Point>& polygon, const std::function<double(const Point&)>& function) {
+std::vector<Point> clip(const std::vector<Point>& polygon,
+                        const std::function<double(const Point&)>& function) {
   std::vector<Point> inside;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     const double at_a = function(a), at_b = function(b);
     if (at_a >= 0) inside.push_back(a);
-    if ((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0)) inside.push_back(a + at_a / (at_a - at_b) * (b - a));
+    if ((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0))
+      inside.push_back(a + at_a / (at_a - at_b) * (b - a));
   }
   return inside;
 }

@@ -10,22 +10,25 @@
 
 namespace signorini {
 
-/// The Taylor coefficients in t of f(x_T + t (x − x_T)) for all t ∈ [0, 1] and all points x of the triangle at once,
-/// x_T its centroid. `undecided` tells whether a jump or a kink may lie in it.
-Series series_on_triangle(const Formula& formula, const std::array<Point, 3>& corners, int order, bool& undecided);
+/// The Taylor coefficients in t of f(x_T + t (x − x_T)) for all t ∈ [0, 1] and all points x of the triangle
+/// at once, x_T its centroid. `undecided` tells whether a jump or a kink may lie in it.
+Series series_on_triangle(const Formula& formula, const std::array<Point, 3>& corners, int order,
+                          bool& undecided);
 
 /// The models of fields, constants or formulas, on a cell.
 using Models = std::vector<TaylorModel>;
 
-/// A list of models for each way in which that may be decided, the same for all fields, which is not on the cell: in
-/// (almost) every point the fields have the values of one of them together. What would take many is not decided.
-std::vector<Models> branches_on_triangle(std::span<const Field* const> fields, const std::array<Point, 3>& corners);
+/// A list of models for each way in which that may be decided, the same for all fields, which is not on the
+/// cell: in (almost) every point the fields have the values of one of them together. What would take many is
+/// not decided.
+std::vector<Models> branches_on_triangle(std::span<const Field* const> fields,
+                                         const std::array<Point, 3>& corners);
 
 /// A part of a triangle on which formulas are polynomials but for a remainder.
 struct TrianglePiece {
   std::array<Point, 3> corners;  ///< in the reference coordinates of the triangle
   double share = 1;              ///< of the triangle's area
-  Models models;  ///< an entry a field; in the reference coordinates of the piece
+  Models models;                 ///< an entry a field; in the reference coordinates of the piece
 
   /// From the reference coordinates of the piece to those of the triangle.
   Point operator()(const Point& own) const {
@@ -33,8 +36,8 @@ struct TrianglePiece {
   }
 };
 
-/// How many cells may still be made for the formulas of one problem. To enclose a formula in many takes seconds: a
-/// progress, if there is one, is asked in each.
+/// How many cells may still be made for the formulas of one problem. To enclose a formula in many takes
+/// seconds: a progress, if there is one, is asked in each.
 struct CellBudget {
   int cells;
   Progress* progress = nullptr;
@@ -55,11 +58,12 @@ struct CellBudget {
 };
 
 /// The part of a convex polygon where a linear function is not negative.
-std::vector<Point> clip(const std::vector<Point>& polygon, const std::function<double(const Point&)>& function);
+std::vector<Point> clip(const std::vector<Point>& polygon,
+                        const std::function<double(const Point&)>& function);
 
-/// Whether a part of a cell may stay as it is, with these models of the fields: `share` of the triangle is the
-/// part's, `of_cell` that of the cell which would else be cut. Cells along a curve are 2ⁿ of the size 2⁻ⁿ: the
-/// sum over them is that of a single one if each is allowed the root of its share.
+/// Whether a part of a cell may stay as it is, with these models of the fields: `share` of the triangle is
+/// the part's, `of_cell` that of the cell which would else be cut. Cells along a curve are 2ⁿ of the size
+/// 2⁻ⁿ: the sum over them is that of a single one if each is allowed the root of its share.
 using Acceptance = std::function<bool(const Models& models, double share, double of_cell)>;
 
 /// The means of the remainders add up to about `tolerance`, a value of the fields.
@@ -68,9 +72,9 @@ Acceptance mean_remainder_below(double tolerance);
 /// Whether nothing more is to be said of a cell, in the reference coordinates of the triangle.
 using Settled = std::function<bool(const std::array<Point, 3>& cell, double share)>;
 
-/// Cuts a triangle into pieces until they are settled, accepted, or the budget is used up: along the lines where a comparison
-/// changes or a kink lies, as far as they are straight, else into halves; first those of which least is known. A straight
-/// jump leaves nothing over. All fields must be constants or formulas.
+/// Cuts a triangle into pieces until they are settled, accepted, or the budget is used up: along the lines
+/// where a comparison changes or a kink lies, as far as they are straight, else into halves; first those of
+/// which least is known. A straight jump leaves nothing over. All fields must be constants or formulas.
 void for_each_piece(std::span<const Field* const> fields, const std::array<Point, 3>& corners,
                     const Acceptance& accept, CellBudget& budget,
                     const std::function<void(const TrianglePiece&)>& visit, const Settled& settled = {});

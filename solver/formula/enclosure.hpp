@@ -8,15 +8,15 @@
 
 namespace signorini {
 
-/// Evaluates a formula in enclosures of its values on a cell: Series on an interval, TaylorModel on a triangle.
-/// Statements hold almost everywhere: what is so in single points and on lines does not count, and a difference
-/// that is rounding counts as none.
+/// Evaluates a formula in enclosures of its values on a cell: Series on an interval, TaylorModel on a
+/// triangle. Statements hold almost everywhere: what is so in single points and on lines does not count, and
+/// a difference that is rounding counts as none.
 ///
 /// Where a comparison is not decided on the cell, or a kink may lie in it, the result encloses all cases, and
 /// `undecided` is what changes its sign there: to cut the cell where it is 0 decides it.
 ///
-/// What is assumed of the sign of such an argument holds for all formulas that are evaluated: their values are then
-/// those in the points of the cell where it is so, as they belong together.
+/// What is assumed of the sign of such an argument holds for all formulas that are evaluated: their values
+/// are then those in the points of the cell where it is so, as they belong together.
 template <typename Value>
 class Enclosure {
  public:
@@ -127,7 +127,8 @@ class Enclosure {
         return narrowed(least ? a : b, values);
       case Sign::unknown: {
         // ½ (a + b) ∓ ½ |a − b|
-        const Value half = constant(0.5), mean = smooth(Operation::multiply, half, smooth(Operation::add, a, b)),
+        const Value half = constant(0.5),
+                    mean = smooth(Operation::multiply, half, smooth(Operation::add, a, b)),
                     rest = smooth(Operation::multiply, half, smooth(Operation::subtract, a, b)),
                     size = rough_like(x, boost::numeric::abs(range(rest)));
         return narrowed(smooth(least ? Operation::subtract : Operation::add, mean, size), values);

@@ -35,8 +35,9 @@ class Formula {
   /// Operands must stand before their operations, and one value be left.
   explicit Formula(std::vector<Instruction> program);
 
-  /// Calls `arithmetic(operation, a, b, c)` with as many operands as the operation takes, and takes the variables from
-  /// its members x, y, nx and ny, the numbers from its `constant(number)`; answers the last value.
+  /// Calls `arithmetic(operation, a, b, c)` with as many operands as the operation takes, and takes the
+  /// variables from its members x, y, nx and ny, the numbers from its `constant(number)`; answers the last
+  /// value.
   template <typename Arithmetic>
   auto evaluate(Arithmetic& arithmetic) const {
     using Value = decltype(arithmetic.constant(0.));
@@ -92,9 +93,9 @@ class Formula {
 /// The names of the functions that an expression may call.
 const std::vector<std::string_view>& function_names();
 
-/// Reads an expression with the operators `? :`, `||`, `&&`, comparisons, `+ -`, `* /`, signs, `^` (from weak to
-/// strong; `^` from the right), the functions of function_names(), numbers, `pi`, and the variables x, y and, if
-/// `on_boundary`, nx, ny. Throws std::invalid_argument with what is wrong and where.
+/// Reads an expression with the operators `? :`, `||`, `&&`, comparisons, `+ -`, `* /`, signs, `^` (from weak
+/// to strong; `^` from the right), the functions of function_names(), numbers, `pi`, and the variables x, y
+/// and, if `on_boundary`, nx, ny. Throws std::invalid_argument with what is wrong and where.
 Formula parse_formula(std::string_view text, bool on_boundary);
 
 }  // namespace signorini

@@ -20,7 +20,8 @@ Interval falling(const Interval& a, const Function& f) {
 
 /// Where a function begins: an end that only rounding puts before it.
 Interval from(double begin, const Interval& a, double scale) {
-  const bool is_rounding = a.lower() < begin && a.lower() >= begin - kEnclosureRounding * scale && a.upper() >= begin;
+  const bool is_rounding =
+      a.lower() < begin && a.lower() >= begin - kEnclosureRounding * scale && a.upper() >= begin;
   return is_rounding ? Interval(begin, a.upper()) : a;
 }
 
@@ -147,8 +148,8 @@ Interval power(const Interval& a, double exponent) {
   return inside.lower() >= 0 && inside.upper() > 0 ? falling(inside, f) : kAnything;
 }
 
-/// Where a ≥ 0 it rises or falls in each of both: it is largest and least in corners, but that it tends to 0 beside
-/// 0^0 = 1.
+/// Where a ≥ 0 it rises or falls in each of both: it is largest and least in corners, but that it tends to 0
+/// beside 0^0 = 1.
 Interval power(const Interval& a, const Interval& exponent) {
   if (exponent.lower() == exponent.upper()) return power(a, exponent.lower());
   const Interval inside = from(0, a, largest(a));

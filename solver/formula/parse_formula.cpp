@@ -1,5 +1,5 @@
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -46,12 +46,19 @@ struct Binary {
   int strength;
 };
 constexpr int kSum = 4, kProduct = 5, kPower = 6;
-constexpr Binary kBinaries[] = {
-    {"||", Operation::either, 1},       {"&&", Operation::both, 2},    {"<=", Operation::less_equal, 3},
-    {">=", Operation::greater_equal, 3}, {"==", Operation::equal, 3},   {"!=", Operation::unequal, 3},
-    {"<", Operation::less, 3},          {">", Operation::greater, 3},  {"+", Operation::add, kSum},
-    {"-", Operation::subtract, kSum},   {"*", Operation::multiply, kProduct},
-    {"/", Operation::divide, kProduct}, {"^", Operation::power, kPower}};
+constexpr Binary kBinaries[] = {{"||", Operation::either, 1},
+                                {"&&", Operation::both, 2},
+                                {"<=", Operation::less_equal, 3},
+                                {">=", Operation::greater_equal, 3},
+                                {"==", Operation::equal, 3},
+                                {"!=", Operation::unequal, 3},
+                                {"<", Operation::less, 3},
+                                {">", Operation::greater, 3},
+                                {"+", Operation::add, kSum},
+                                {"-", Operation::subtract, kSum},
+                                {"*", Operation::multiply, kProduct},
+                                {"/", Operation::divide, kProduct},
+                                {"^", Operation::power, kPower}};
 
 /// Recursive descent; each function appends the program of what it has read.
 class Parser {
@@ -71,7 +78,8 @@ class Parser {
   }
 
   char peek() {
-    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
+    while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos)
+      ++at_;
     return at_ < text_.size() ? text_[at_] : '\0';
   }
 

@@ -73,7 +73,8 @@ Series integral(const Series& a, const Series& d, const Interval& values) {
   return all;
 }
 
-/// From the Taylor coefficients φ_m(α) a^(α − m) of a^α, where a reaches 0: they may be infinite there, of one sign.
+/// From the Taylor coefficients φ_m(α) a^(α − m) of a^α, where a reaches 0: they may be infinite there, of
+/// one sign.
 Series power_at_zero(const Series& a, double exponent, const Interval& values) {
   Series all(a.order(), values), beyond = a, beyond_to_m(a.order(), 1);
   beyond[0] = 0;

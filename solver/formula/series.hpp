@@ -6,9 +6,9 @@
 
 namespace signorini {
 
-/// The Taylor coefficients f^(k)/k!, k = 0 … order, of a function of one variable, each enclosed for all points
-/// of an interval (which may be a single point): the arithmetic of automatic differentiation. Where the function
-/// is not smooth its values are enclosed all the same, and its derivatives are anything.
+/// The Taylor coefficients f^(k)/k!, k = 0 … order, of a function of one variable, each enclosed for all
+/// points of an interval (which may be a single point): the arithmetic of automatic differentiation. Where
+/// the function is not smooth its values are enclosed all the same, and its derivatives are anything.
 class Series {
  public:
   static constexpr int kMost = 10;

@@ -39,8 +39,8 @@ struct Monomials {
     }
   }
 
-  /// |u^a v^b| has no maximum inside but at a zero of its gradient, so that it is largest on the boundary; there
-  /// it is u^a v^b on three lines. The sampled maximum misses less than the margin.
+  /// |u^a v^b| has no maximum inside but at a zero of its gradient, so that it is largest on the boundary;
+  /// there it is u^a v^b on three lines. The sampled maximum misses less than the margin.
   static double bound(int a, int b) {
     constexpr int samples = 300;
     double most = 0;
@@ -123,9 +123,9 @@ int TaylorModel::degree() const {
   return 0;
 }
 
-/// The values at the corners of all up to degree 2. On edge e, t ∈ [0, 1], that is linear but for −b_e t (1 − t), b_e half
-/// its second derivative, and on the triangle but for −Σ b_e λ_i λ_j; the λ_i λ_j are at most ¼ each and add up to at most
-/// ⅓.
+/// The values at the corners of all up to degree 2. On edge e, t ∈ [0, 1], that is linear but for −b_e t (1 −
+/// t), b_e half its second derivative, and on the triangle but for −Σ b_e λ_i λ_j; the λ_i λ_j are at most ¼
+/// each and add up to at most ⅓.
 TaylorModel::LinearPart TaylorModel::linear_part() const {
   const auto at = [this](double u, double v) {
     return c_[0] + c_[1] * u + c_[2] * v + c_[3] * u * u + c_[4] * u * v + c_[5] * v * v;
@@ -185,14 +185,16 @@ TaylorModel product(const TaylorModel& a, const TaylorModel& b) {
   return all;
 }
 
-/// φ(c + δ) = Σ φ_k δ^k + φ_{n+1}(ξ) δ^{n+1} with the Taylor coefficients φ_k in c and ξ between c and the values.
+/// φ(c + δ) = Σ φ_k δ^k + φ_{n+1}(ξ) δ^{n+1} with the Taylor coefficients φ_k in c and ξ between c and the
+/// values.
 TaylorModel composed(Operation operation, const TaylorModel& a, double exponent) {
   const auto coefficients = [&](int order, const Interval& at) {
     const Series line = Series::line(order, at, 1);
     return operation == Operation::power ? smooth(operation, line, Series(order, exponent))
                                          : smooth(operation, line);
   };
-  const Interval values = operation == Operation::power ? power(a.values_, exponent) : range(operation, a.values_);
+  const Interval values =
+      operation == Operation::power ? power(a.values_, exponent) : range(operation, a.values_);
   const double center = a.c_[0];
   if (a.degree() == 0 && a.remainder_ == 0) {
     TaylorModel constant(coefficients(0, center)[0].lower());
@@ -267,16 +269,19 @@ TaylorModel smooth(Operation operation, const TaylorModel& a, const TaylorModel&
       if (!(a.values().lower() > 0)) return TaylorModel::rough(power(a.values(), b.values()));
       return composed(Operation::exp, product(b, composed(Operation::log, a, 1)), 1);
     case Operation::atan2: {
-      // arctan of the quotient, turned such that it is away from the cut; the same as an angle at every point.
+      // arctan of the quotient, turned such that it is away from the cut; the same as an angle at every
+      // point.
       const Interval values = angle(a.values(), b.values());
       TaylorModel all = TaylorModel::rough(values);
       const Interval &y = a.values(), &x = b.values();
       if (x.lower() > 0)
         all = composed(Operation::atan, smooth(Operation::divide, a, b), 1);
       else if (y.lower() > 0)
-        all = sum(TaylorModel(std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1), -1);
+        all = sum(TaylorModel(std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1),
+                  -1);
       else if (y.upper() < 0)
-        all = sum(TaylorModel(-std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1), -1);
+        all = sum(TaylorModel(-std::asin(1.)), composed(Operation::atan, smooth(Operation::divide, b, a), 1),
+                  -1);
       else if (x.upper() < 0 && (y.lower() >= 0 || y.upper() <= 0))
         all = sum(TaylorModel((y.lower() >= 0 ? 2 : -2) * std::asin(1.)),
                   composed(Operation::atan, smooth(Operation::divide, a, b), 1), 1);

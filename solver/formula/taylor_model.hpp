@@ -6,8 +6,9 @@
 
 namespace signorini {
 
-/// A function on a triangle as a polynomial of degree 4 and a bound of what it is off by (Makino, Berz 2003). The
-/// variables (u, v) are the reference coordinates less those of the centroid: u, v ∈ [−1/3, 2/3], u + v ≤ 1/3.
+/// A function on a triangle as a polynomial of degree 4 and a bound of what it is off by (Makino, Berz 2003).
+/// The variables (u, v) are the reference coordinates less those of the centroid: u, v ∈ [−1/3, 2/3], u + v ≤
+/// 1/3.
 class TaylorModel {
  public:
   static constexpr int kDegree = 4, kSize = (kDegree + 1) * (kDegree + 2) / 2;

@@ -38,7 +38,8 @@ class InvalidProblem : public std::runtime_error {
 ///
 /// A field knows its name (the path of the member that it came from), so that a value that is not finite
 /// is refused with the name and the place. Of a formula the certificate encloses all values; of a function it
-/// knows only those that it asks for, so that nothing is guaranteed, unless the function says that it is quadratic.
+/// knows only those that it asks for, so that nothing is guaranteed, unless the function says that it is
+/// quadratic.
 class Field {
  public:
   using Function = std::function<double(const Point& x, const Vector& normal)>;
@@ -92,8 +93,8 @@ class VectorField {
   std::vector<Field> components_;
 };
 
-/// Why nothing is guaranteed with a formula that has a pole near x, or may have one for all that its enclosures tell, and
-/// what would help.
+/// Why nothing is guaranteed with a formula that has a pole near x, or may have one for all that its
+/// enclosures tell, and what would help.
 std::string not_known_to_be_finite(const Field& field, const Point& x);
 
 /// `(x, y)` with the fewest digits that tell the point from its neighbours.

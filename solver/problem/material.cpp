@@ -36,8 +36,8 @@ Compliance extend(const Eigen::Matrix3d& mandel) {
   return symmetric.transpose() * mandel * symmetric + deviatoric * skew.transpose() * skew;
 }
 
-/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. No difference of
-/// the two moduli is taken: near ν = 1/2 it would be all that is left of the volume's.
+/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. No difference
+/// of the two moduli is taken: near ν = 1/2 it would be all that is left of the volume's.
 struct Isotropic {
   double shear, volume;
 

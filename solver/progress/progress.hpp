@@ -26,8 +26,8 @@ class Progress {
   /// There is an iterate to be kept: until the next phase, only the observer ends the solve.
   void found() { found_ = true; }
 
-  /// Seconds of the time limit that are left, if there is one: what a part of the solve may take that has a record of
-  /// its own.
+  /// Seconds of the time limit that are left, if there is one: what a part of the solve may take that has a
+  /// record of its own.
   std::optional<double> time_left() const;
 
   /// Throws like enter().
@@ -58,8 +58,8 @@ class Progress {
   double seconds_in(Phase phase) const;
 
  private:
-  /// The phase certify may go on a little beyond the limit: hardly any time is needed for the bound of a small problem
-  /// whose iteration the limit ended.
+  /// The phase certify may go on a little beyond the limit: hardly any time is needed for the bound of a
+  /// small problem whose iteration the limit ended.
   static constexpr double kForBound = 0.2;
 
   bool in_time() const { return time_left().value_or(1) > 0; }

@@ -43,16 +43,19 @@ std::vector<std::string> notes_on_strains(const Solution& solution) {
   std::ostringstream text;
   text << std::setprecision(2);
   if (large > kNoticeableShare * area) {
-    text << "the displacement changes by up to " << largest << " of the length over which it does, and by more than "
-         << kLargeGradient << " on " << 100 * large / area
-         << " % of the body: the theory of small displacements does not describe this; check the units of loads, gaps "
+    text << "the displacement changes by up to " << largest
+         << " of the length over which it does, and by more than " << kLargeGradient << " on "
+         << 100 * large / area
+         << " % of the body: the theory of small displacements does not describe this; check the units of "
+            "loads, gaps "
             "and moduli";
     notes.push_back(text.str());
   }
   if (inside_out > kNoticeableShare * area) {
     text.str("");
     text << "the displaced body overlaps itself, " << 100 * inside_out / area
-         << " % of it are turned inside out: the foundation begins too far inside the body, or the load is too large";
+         << " % of it are turned inside out: the foundation begins too far inside the body, or the load is "
+            "too large";
     notes.push_back(text.str());
   }
   return notes;

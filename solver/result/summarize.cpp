@@ -207,7 +207,8 @@ bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBou
   }
   constexpr double rounding = 1e-11;
   const double might_be = length / std::sqrt(compliance);
-  return bound.value <= bound.relative * rounding * might_be && bound.value <= std::sqrt(2 * rounding) * might_be;
+  return bound.value <= bound.relative * rounding * might_be &&
+         bound.value <= std::sqrt(2 * rounding) * might_be;
 }
 
 Timings timings(const Progress& progress) {
@@ -216,7 +217,8 @@ Timings timings(const Progress& progress) {
           progress.seconds_in(Phase::certify),   progress.seconds()};
 }
 
-Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress) {
+Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings,
+                  Progress& progress) {
   Solution solution;
   Summary& summary = solution.summary;
   solution.scheme = problem.problem.scheme;
@@ -259,7 +261,8 @@ namespace {
 
 void add(const Problem& problem, Certificate certificate, Solution& solution) {
   if (certificate.has_bound()) {
-    std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(solution.summary.notes));
+    std::ranges::copy(warnings(problem, solution, certificate.bound),
+                      std::back_inserter(solution.summary.notes));
     solution.summary.error_bound = std::move(certificate.bound);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);
@@ -280,7 +283,8 @@ void add_bound(const Problem& problem, const std::function<Certificate()>& certi
     add(problem, certify(), solution);
   } catch (const TimeUp&) {
     const std::string why =
-        "the time limit was reached before the error bound was known: raise solver.time_limit or coarsen the mesh";
+        "the time limit was reached before the error bound was known: raise solver.time_limit or coarsen the "
+        "mesh";
     solution.summary.notes.push_back("there is no error bound: " + why);
     if (solution.summary.outcome == Outcome::converged) {
       solution.summary.outcome = Outcome::time_limit;

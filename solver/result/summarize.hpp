@@ -38,16 +38,19 @@ ContactSummary sum_up(const std::vector<ContactPart>& parts);
 /// From the values of the part's reactions_on().
 Reaction make_reaction(std::string part, const std::vector<double>& values);
 
-/// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone: contact
-/// pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not finite.
-Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings, Progress& progress);
+/// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone:
+/// contact pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not
+/// finite.
+Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings,
+                  Progress& progress);
 
-/// Stress and bound are rounding beside what displacement and clearance might have made, as of a body that moves
-/// without strain. A pressure at which the stress is rounding acts over the clearance, so that of the bound the square is.
+/// Stress and bound are rounding beside what displacement and clearance might have made, as of a body that
+/// moves without strain. A pressure at which the stress is rounding acts over the clearance, so that of the
+/// bound the square is.
 bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBound& bound);
 
-/// Enters the phase certify and adds the error bound, if its numbers are finite, and what must be said about it. If the
-/// time is up before, there is none, and the outcome says so.
+/// Enters the phase certify and adds the error bound, if its numbers are finite, and what must be said about
+/// it. If the time is up before, there is none, and the outcome says so.
 void add_bound(const Problem& problem, const std::function<Certificate()>& certify, Solution& solution,
                Progress& progress);
 

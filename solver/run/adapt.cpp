@@ -91,7 +91,8 @@ class Levels {
     const std::string why = solution.summary.notes.back();
     const bool is_late = solution.summary.outcome == Outcome::time_limit;
     if (!empty())
-      return end_above_tolerance(is_late ? Outcome::time_limit : Outcome::tolerance_not_met, "on the next mesh " + why);
+      return end_above_tolerance(is_late ? Outcome::time_limit : Outcome::tolerance_not_met,
+                                 "on the next mesh " + why);
     if (!is_late) {
       solution.summary.outcome = Outcome::tolerance_not_met;
       solution.summary.advice = why + "; the mesh was not refined";

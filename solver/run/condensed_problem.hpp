@@ -33,8 +33,8 @@ class CondensedProblem {
 
   /// Finds the clearances, beginning as find_clearance() does, and from them all fields. The method is one on
   /// the contact complement, not the paper's form.
-  /// A foundation so far away that its gap would drown the displacement is drawn near: a gap that is out of reach is as
-  /// good as any other.
+  /// A foundation so far away that its gap would drown the displacement is drawn near: a gap that is out of
+  /// reach is as good as any other.
   Fields find(const Method& method, Progress& progress, const Eigen::VectorXd& start = {});
 
   /// The same with all that the fields tell, error bound included.

@@ -19,14 +19,14 @@ struct DataCheck {
   bool is_complete = true;
 };
 
-/// The faults of the data of a problem, and of the variations of its sweep, in the points of its mesh that the discrete
-/// problem asks. Of each field, and of the sweep, only so much is looked at as takes `most_steps`; then the check is not
-/// complete. Throws what the progress throws, if there is one.
+/// The faults of the data of a problem, and of the variations of its sweep, in the points of its mesh that
+/// the discrete problem asks. Of each field, and of the sweep, only so much is looked at as takes
+/// `most_steps`; then the check is not complete. Throws what the progress throws, if there is one.
 DataCheck check_data(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh,
                      double most_steps, Progress* progress);
 
-/// The same of all of the problem's own data. Throws InvalidProblem if there is a fault. A variation is looked at when it
-/// is solved, and has its error by itself.
+/// The same of all of the problem's own data. Throws InvalidProblem if there is a fault. A variation is
+/// looked at when it is solved, and has its error by itself.
 void require_sound_data(const Problem& problem, const Mesh& mesh, Progress& progress);
 
 }  // namespace signorini

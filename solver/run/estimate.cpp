@@ -182,8 +182,8 @@ Estimate estimate(const Problem& problem) {
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
   if (std::holds_alternative<PaperUzawa>(settings.method))
     estimate.memory_bytes = std::max(estimate.memory_bytes, estimate.paper_form_bytes);
-  estimate.memory_bytes +=
-      std::visit([](const auto& method) { return memory_of_history(method.max_iterations); }, settings.method);
+  estimate.memory_bytes += std::visit(
+      [](const auto& method) { return memory_of_history(method.max_iterations); }, settings.method);
   // A sweep has a second solution, to which its entries refer.
   if (entries > 0)
     estimate.memory_bytes += estimate.solution_bytes + static_cast<double>(entries) * estimate.entry_bytes;

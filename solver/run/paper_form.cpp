@@ -19,13 +19,14 @@ Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& setting
   progress.enter(Phase::iterate);
   const Outcome outcome = iteration.run(progress);
   progress.found();
-  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(), outcome};
+  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
+                outcome};
   return describe(problem, fields, settings, progress);
 }
 
 /// The certificate of the discrete solution, moved to the iterate.
-Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh, const Solution& iterate,
-                            Progress& progress) {
+Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh,
+                            const Solution& iterate, Progress& progress) {
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
   CondensedProblem condensed(problem, mesh, within);
@@ -46,7 +47,8 @@ Solution solve_paper_form(const Problem& problem, const Settings& settings, Prog
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
   require_sound_data(problem, *mesh, progress);
   Solution solution = iterate(problem, *mesh, settings, progress);
-  add_bound(problem, [&] { return certify_iterate(problem, mesh, solution, progress); }, solution, progress);
+  add_bound(
+      problem, [&] { return certify_iterate(problem, mesh, solution, progress); }, solution, progress);
   return solution;
 }
 

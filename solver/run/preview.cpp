@@ -13,8 +13,8 @@
 namespace signorini {
 namespace {
 
-/// Without its formula, of which the solve encloses all values at great length. Where there is no value it does not
-/// count: the solve asks in other points.
+/// Without its formula, of which the solve encloses all values at great length. Where there is no value it
+/// does not count: the solve asks in other points.
 Field sampled(const Field& field) {
   if (!field.formula()) return field;
   const auto value = [formula = *field.formula()](const Point& x, const Vector& normal) {
@@ -60,7 +60,8 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
   const std::optional<Mesh> small = make_small_mesh(problem.domain, start);
   if (!small || count(sizes_of(*small)) > few_triangles)
     return {"the mesh has more than " + std::to_string(few_triangles) +
-            " triangles: whether formulas have sound values on it, and whether the body can come to rest, the solve "
+            " triangles: whether formulas have sound values on it, and whether the body can come to rest, "
+            "the solve "
             "will tell"};
   const Mesh mesh = stabilized(problem, refine(*small, start.refine));
   if (problem.mesh.adaptive)
@@ -70,8 +71,9 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
   if (!check.faults.empty()) throw InvalidProblem(std::move(check.faults));
   std::vector<std::string> left;
   if (!check.is_complete)
-    left.push_back("the formulas are so long, or so many, that they were tried in some points of the mesh only: "
-                   "whether they have sound values in all, the solve will tell");
+    left.push_back(
+        "the formulas are so long, or so many, that they were tried in some points of the mesh only: "
+        "whether they have sound values in all, the solve will tell");
   constexpr double long_formula = 60;
   if (longest_formula(problem.body) > long_formula)
     left.push_back("the formula of the load is long: whether the body can come to rest, the solve will tell");

@@ -14,7 +14,8 @@
 namespace signorini {
 namespace {
 
-Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen, Progress& progress) {
+Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen,
+                           Progress& progress) {
   const auto n = static_cast<Eigen::Index>(chosen.size());
   Eigen::MatrixXd lower;
   try {
@@ -32,7 +33,8 @@ Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>
 
 }  // namespace
 
-DenseCholesky::DenseCholesky(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen, Progress& progress)
+DenseCholesky::DenseCholesky(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen,
+                             Progress& progress)
     : factor_(lower_part(matrix, chosen, progress)) {
   const int n = static_cast<int>(chosen.size());
   positive_ = eliminate_in_blocks(n, n, factor_.data(), n, progress, [](int, int) {});

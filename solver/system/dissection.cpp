@@ -30,7 +30,9 @@ double spread(Iterator begin, Iterator end, int axis) {
   constexpr double golden = 0.6180339887498949;
   for (std::ptrdiff_t i = 0; i < size; ++i) {
     const double place = (static_cast<double>(i) + 0.5) * golden;
-    sample[i] = begin[static_cast<std::ptrdiff_t>((place - std::floor(place)) * static_cast<double>(end - begin))].at[axis];
+    sample[i] =
+        begin[static_cast<std::ptrdiff_t>((place - std::floor(place)) * static_cast<double>(end - begin))]
+            .at[axis];
   }
   const auto quartile = sample.begin() + size / 4, other = sample.begin() + size - 1 - size / 4;
   std::nth_element(sample.begin(), quartile, sample.begin() + size);
@@ -38,8 +40,8 @@ double spread(Iterator begin, Iterator end, int axis) {
   return *other - *quartile;
 }
 
-/// The axis along which the elements lie: that of the longer extent, unless most of a large piece lie in a place that is
-/// narrow there, where a cut would be as long as the place.
+/// The axis along which the elements lie: that of the longer extent, unless most of a large piece lie in a
+/// place that is narrow there, where a cut would be as long as the place.
 template <typename Iterator>
 int axis_of(Iterator begin, Iterator end) {
   constexpr std::ptrdiff_t large = 256;
@@ -47,7 +49,8 @@ int axis_of(Iterator begin, Iterator end) {
   Eigen::AlignedBox2d box;
   for (auto centre = begin; centre != end; ++centre) box.extend(centre->at);
   const int longer = box.sizes().x() >= box.sizes().y() ? 0 : 1;
-  const bool misled = end - begin > large && spread(begin, end, longer) < narrow * spread(begin, end, 1 - longer);
+  const bool misled =
+      end - begin > large && spread(begin, end, longer) < narrow * spread(begin, end, 1 - longer);
   return misled ? 1 - longer : longer;
 }
 

@@ -56,9 +56,8 @@ LocalFields Elimination::solve(const LocalVector& a, const LocalVector& b) const
   return fields;
 }
 
-LocalFields Elimination::recover(
-    const LocalVector& coupling, const LocalVector& load,
-    const std::function<LocalVector(const LocalVector& stress)>& strain) const {
+LocalFields Elimination::recover(const LocalVector& coupling, const LocalVector& load,
+                                 const std::function<LocalVector(const LocalVector& stress)>& strain) const {
   // A translation has no stress. Without it the traces are as small as their differences, and the stress
   // keeps its digits on small triangles.
   const Translation translation(coupling, spaces_);
@@ -67,8 +66,7 @@ LocalFields Elimination::recover(
   // Near incompressibility W is badly conditioned; one correction brings the balance back to rounding and
   // the volume's strain to its digits.
   const LocalFields correction =
-      solve(right - strain(fields.stress) -
-                spaces_.divergence.transpose().lazyProduct(fields.displacement),
+      solve(right - strain(fields.stress) - spaces_.divergence.transpose().lazyProduct(fields.displacement),
             -load - spaces_.divergence * fields.stress);
   fields.stress += correction.stress;
   fields.displacement += correction.displacement;

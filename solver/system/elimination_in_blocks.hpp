@@ -11,15 +11,17 @@ extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* ld
 
 namespace signorini {
 
-/// Eliminates the first columns, `pivots`, of a dense symmetric matrix with so many rows, of which it holds the lower
-/// triangle, column by column with the given distance: they become those of the Cholesky factor. By blocks, between
-/// which it looks at the observer; `after_block(begin, width)` may use the columns that are done. False if a pivot is
-/// not positive. Throws what Progress throws.
+/// Eliminates the first columns, `pivots`, of a dense symmetric matrix with so many rows, of which it holds
+/// the lower triangle, column by column with the given distance: they become those of the Cholesky factor. By
+/// blocks, between which it looks at the observer; `after_block(begin, width)` may use the columns that are
+/// done. False if a pivot is not positive. Throws what Progress throws.
 template <typename AfterBlock>
 bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Progress& progress,
                          const AfterBlock& after_block) {
   constexpr int kBlock = 256, kStrip = 1024;
-  const auto at = [&](int row, int column) { return matrix + static_cast<std::ptrdiff_t>(column) * distance + row; };
+  const auto at = [&](int row, int column) {
+    return matrix + static_cast<std::ptrdiff_t>(column) * distance + row;
+  };
   for (int begin = 0; begin < pivots; begin += kBlock) {
     progress.check();
     const int width = std::min(kBlock, pivots - begin), end = begin + width;
@@ -28,11 +30,13 @@ bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Pro
     if (info != 0) return false;
     for (int top = end; top < rows; top += kStrip) {
       progress.check();
-      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, std::min(kStrip, rows - top),
-                  width, 1, at(begin, begin), distance, at(top, begin), distance);
+      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                  std::min(kStrip, rows - top), width, 1, at(begin, begin), distance, at(top, begin),
+                  distance);
     }
     if (end < pivots)
-      subtract_square(rows - end, pivots - end, width, at(end, begin), distance, at(end, end), distance, progress);
+      subtract_square(rows - end, pivots - end, width, at(end, begin), distance, at(end, end), distance,
+                      progress);
     after_block(begin, width);
   }
   return true;

@@ -22,7 +22,8 @@ void subtract_forces(const TraceSpace& traces, int triangle, LocalVector force, 
 Recovered recover(const Discretization& problem, const Eigen::VectorXd& x, Progress& progress) {
   const TraceSpace& traces = problem.traces;
   Recovered all{Eigen::MatrixXd(problem.spaces().stresses(), problem.triangles()),
-                Eigen::MatrixXd(problem.spaces().displacements(), problem.triangles()), problem.coupling_load};
+                Eigen::MatrixXd(problem.spaces().displacements(), problem.triangles()),
+                problem.coupling_load};
   PerShape<Elimination> eliminations(problem);
   for (int t = 0; t < problem.triangles(); ++t) {
     progress.check_in(t);

@@ -7,13 +7,14 @@
 
 namespace signorini {
 
-void subtract_square(int rows, int columns, int width, const double* b, int distance_b, double* a, int distance_a,
-                     Progress& progress) {
+void subtract_square(int rows, int columns, int width, const double* b, int distance_b, double* a,
+                     int distance_a, Progress& progress) {
   if (columns == 0 || width == 0) return;
   // Products of a strip, and the fewest columns with which BLAS is fast.
   constexpr std::int64_t kProducts = 1 << 28;
   constexpr int kFewest = 32;
-  const int strip = std::max<int>(kFewest, static_cast<int>(kProducts / (static_cast<std::int64_t>(rows) * width)));
+  const int strip =
+      std::max<int>(kFewest, static_cast<int>(kProducts / (static_cast<std::int64_t>(rows) * width)));
   for (int begin = 0; begin < columns; begin += strip) {
     progress.check();
     const int own = std::min(strip, columns - begin), below = rows - begin - own;

@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/json_document.hpp"
-#include "api/problem_json.hpp"
-#include "faults_of.hpp"
 #include "../problems/json_problems.hpp"
 #include "../problems/sanitized.hpp"
 #include "../problems/seconds_at_work.hpp"
+#include "api/json_document.hpp"
+#include "api/problem_json.hpp"
+#include "faults_of.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::budget_test {

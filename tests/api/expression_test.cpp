@@ -145,8 +145,10 @@ class RandomText {
         return sign() + "(" + (*this)(depth - 1) + ")";
       default: {
         // Without parentheses: what binds more strongly must be known.
-        static const char* const signs[] = {"+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "&&", "||"};
-        return operand(depth) + blank() + signs[choose(13)] + blank() + operand(depth) + signs[choose(5)] + leaf();
+        static const char* const signs[] = {
+            "+", "-", "*", "/", "^", "<", "<=", ">", ">=", "==", "!=", "&&", "||"};
+        return operand(depth) + blank() + signs[choose(13)] + blank() + operand(depth) + signs[choose(5)] +
+               leaf();
       }
     }
   }

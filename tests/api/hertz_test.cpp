@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "../problems/sanitized.hpp"
 #include "api/examples.hpp"
 #include "api/problem_json.hpp"
-#include "../problems/sanitized.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::hertz_test {

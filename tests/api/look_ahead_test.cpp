@@ -1,9 +1,9 @@
 // What is said of a problem before it is solved is what the solve says.
 #include <gtest/gtest.h>
 
+#include "../problems/json_problems.hpp"
 #include "api/problem_json.hpp"
 #include "faults_of.hpp"
-#include "../problems/json_problems.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::look_ahead_test {
@@ -51,17 +51,20 @@ json with(json problem, const std::string& pointer, const json& value) {
 using Pointers = std::vector<std::string>;
 
 TEST(LookAhead, FindsWhatOnlyTheRealMeshShows) {
-  const std::string dip = "1-2*exp(-1e3*((x-0.4123)^2+(y-0.3331)^2))", hole = "log((x-0.4123)^2+(y-0.3331)^2-1e-4)";
+  const std::string dip = "1-2*exp(-1e3*((x-0.4123)^2+(y-0.3331)^2))",
+                    hole = "log((x-0.4123)^2+(y-0.3331)^2-1e-4)";
   EXPECT_EQ(agreed(with(membrane(32), "/material/stiffness", dip)), Pointers{"/material/stiffness"});
   EXPECT_EQ(agreed(with(block(32), "/material/young", dip)), Pointers{"/material/young"});
-  EXPECT_EQ(agreed(with(block(32), "/material/poisson", "0.3*(" + dip + ")-0.8")), Pointers{"/material/poisson"});
+  EXPECT_EQ(agreed(with(block(32), "/material/poisson", "0.3*(" + dip + ")-0.8")),
+            Pointers{"/material/poisson"});
   EXPECT_EQ(agreed(with(membrane(32), "/load/body", hole)), Pointers{"/load/body"});
   EXPECT_EQ(agreed(with(membrane(32), "/boundary/top", {{"type", "traction"}, {"value", "log(x-0.002)"}})),
             Pointers{"/boundary/top/value"});
   EXPECT_EQ(agreed(with(membrane(32), "/boundary/bottom/gap", "0.1+log(x-0.002)^2")),
             Pointers{"/boundary/bottom/gap"});
   json swept = membrane(32);
-  swept["sweep"] = {{{"load", {{"body", 1}}}}, {{"load", {{"body", hole}}}},
+  swept["sweep"] = {{{"load", {{"body", 1}}}},
+                    {{"load", {{"body", hole}}}},
                     {{"boundary", {{"bottom", {{"gap", "0.1+log(x-0.002)^2"}}}}}}};
   const Request request = parse_request(swept.dump());
   EXPECT_EQ(pointers_of(faults_of([&] { look_ahead(request.problem, request.sweep); })),
@@ -75,7 +78,8 @@ TEST(LookAhead, FindsWhatOnlyTheRealMeshShows) {
   EXPECT_TRUE(entries[2].error.starts_with("/sweep/2/boundary/bottom/gap ")) << entries[2].error;
 }
 
-/// Points between those that the discrete problem asks are the certificate's, which says what it makes of them.
+/// Points between those that the discrete problem asks are the certificate's, which says what it makes of
+/// them.
 TEST(LookAhead, RefusesNothingForOtherPoints) {
   const std::string spike = "1-2*exp(-1e6*((x-0.4123)^2+(y-0.3331)^2))";
   for (const json& problem :
@@ -83,7 +87,8 @@ TEST(LookAhead, RefusesNothingForOtherPoints) {
         with(membrane(), "/material/stiffness", "abs(x-0.4123)"),
         with(membrane(), "/material/stiffness", "x==0.25?0:1"), with(block(), "/material/young", spike),
         with(block(), "/material/poisson", "0.3*(" + spike + ")-0.8"),
-        with(membrane(), "/load/body", "1/(x-0.37)"), with(membrane(), "/boundary/bottom/gap", "0.1+1/abs(x-0.37)")})
+        with(membrane(), "/load/body", "1/(x-0.37)"),
+        with(membrane(), "/boundary/bottom/gap", "0.1+1/abs(x-0.37)")})
     EXPECT_EQ(agreed(problem), Pointers{});
   json swept = membrane();
   swept["sweep"] = {{{"load", {{"body", "1/(x-0.37)"}}}}};
@@ -91,7 +96,9 @@ TEST(LookAhead, RefusesNothingForOtherPoints) {
 }
 
 TEST(LookAhead, SaysWhatItLeavesToTheSolve) {
-  const auto left = [](const json& problem) { return look_ahead(parse_request(problem.dump()).problem).size(); };
+  const auto left = [](const json& problem) {
+    return look_ahead(parse_request(problem.dump()).problem).size();
+  };
   EXPECT_EQ(left(membrane(32)), 0u);
   EXPECT_EQ(left(membrane(64)), 1u);
   std::string formula = "1";

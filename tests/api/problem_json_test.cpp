@@ -88,8 +88,8 @@ TEST(ParseRequest, ReadsTheFinenessInBothForms) {
 }
 
 TEST(ParseRequest, ReadsAStiffnessMatrixOfExpressions) {
-  const auto stiffness =
-      std::get<MembraneStiffness>(parse_with("/material/stiffness", json::parse(R"([["2 + x", 0.5], [0.5, 3]])")).problem.material);
+  const auto stiffness = std::get<MembraneStiffness>(
+      parse_with("/material/stiffness", json::parse(R"([["2 + x", 0.5], [0.5, 3]])")).problem.material);
   EXPECT_EQ(stiffness.xx(Point(1, 0)), 3);
   EXPECT_EQ(stiffness.xy(Point(1, 0)), 0.5);
   EXPECT_EQ(stiffness.yy(Point(1, 0)), 3);

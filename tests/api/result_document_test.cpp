@@ -104,8 +104,9 @@ TEST(WriteResult, GivesTheLevelsOfAnAdaptiveMeshAsColumns) {
   Summary summary;
   EXPECT_FALSE(summary_of(summary).contains("levels"));
   summary.levels = {{1, 32, 96, 0.5, 0.25, 3, 0.125}, {2, 50, 150, 0.25, 0.125, 1, 0.5}};
-  EXPECT_EQ(summary_of(summary)["levels"],
-            json::parse(R"({"level": [1, 2], "triangles": [32, 50], "unknowns": [96, 150], "bound": [0.5, 0.25],
+  EXPECT_EQ(
+      summary_of(summary)["levels"],
+      json::parse(R"({"level": [1, 2], "triangles": [32, 50], "unknowns": [96, 150], "bound": [0.5, 0.25],
                             "relative": [0.25, 0.125], "iterations": [3, 1], "seconds": [0.125, 0.5]})"));
 }
 
@@ -171,10 +172,8 @@ TEST(ResultFieldsParse, RefusesUnknownNamesAndSaysWhichItKnows) {
   for (const char* list : {"all", "summary,", ",", "summary,,mesh", "Mesh", "mesh, stress", "energy"}) {
     const auto faults = faults_of([&] { ResultFields::parse(list); });
     ASSERT_EQ(pointers_of(faults), std::vector<std::string>{"/fields"}) << list;
-    EXPECT_THAT(
-        faults[0].detail,
-        HasSubstr(
-            "summary, problem, mesh, displacement, stress, contact, history, sweep, study, principal, von_mises"));
+    EXPECT_THAT(faults[0].detail, HasSubstr("summary, problem, mesh, displacement, stress, contact, history, "
+                                            "sweep, study, principal, von_mises"));
   }
 }
 

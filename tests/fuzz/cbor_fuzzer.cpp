@@ -15,8 +15,7 @@ using nlohmann::json;
 
 /// Numbers are read as doubles, whatever they were written as. Below -2^63 nlohmann's integers overflow.
 bool mean_the_same(const json& a, const json& b) {
-  if (a.is_number() && b.is_number())
-    return a.get<double>() == b.get<double>() || a.get<double>() <= -0x1p63;
+  if (a.is_number() && b.is_number()) return a.get<double>() == b.get<double>() || a.get<double>() <= -0x1p63;
   if (a.type() != b.type() || a.size() != b.size()) return false;
   if (!a.is_structured()) return a == b;
   for (auto own = a.begin(), other = b.begin(); own != a.end(); ++own, ++other)

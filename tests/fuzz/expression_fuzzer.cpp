@@ -4,8 +4,8 @@
 
 #include "api/expression.hpp"
 
-/// Whatever text stands for an expression, it is refused with a fault, or it can be evaluated, if only to a value
-/// that is refused.
+/// Whatever text stands for an expression, it is refused with a fault, or it can be evaluated, if only to a
+/// value that is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace signorini;
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -7,8 +7,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
-/// Gives the files of the directories to a fuzz target, for compilers that have no libFuzzer. Fails by a crash, or
-/// if there is no file.
+/// Gives the files of the directories to a fuzz target, for compilers that have no libFuzzer. Fails by a
+/// crash, or if there is no file.
 int main(int argc, char** argv) {
   int count = 0;
   for (int i = 1; i < argc; ++i) {

@@ -68,8 +68,7 @@ inline Problem half_disc(Scheme scheme) {
   problem.mesh.fineness = LargestEdge{0.3};
   problem.scheme = scheme;
   problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
-  problem.boundary = {{"arc", Contact{formula("y")}},
-                      {"top", Fixed{VectorField(0, -0.02)}}};
+  problem.boundary = {{"arc", Contact{formula("y")}}, {"top", Fixed{VectorField(0, -0.02)}}};
   return problem;
 }
 
@@ -165,17 +164,21 @@ struct Smooth {
     problem.material = YoungPoisson{Field(1), Field(nu), Plane::strain};
     const std::string l = digits(lambda), m = digits(mu), bump = "sin(pi*x)*sin(pi*y)/" + l,
                       slope = "-" + digits(lambda + mu) + "*pi^2*cos(pi*(x+y))/" + l;
-    problem.body = VectorField(
-        formula("-" + m + "*pi^2*(2*cos(2*pi*x)*sin(2*pi*y)-4*sin(pi*x)^2*sin(2*pi*y)-2*" + bump + ")" + slope),
-        formula("-" + m + "*pi^2*(-2*cos(2*pi*y)*sin(2*pi*x)+4*sin(pi*y)^2*sin(2*pi*x)-2*" + bump + ")" + slope));
-    const Fixed fixed{VectorField(formula("sin(pi*x)^2*sin(2*pi*y)+" + bump),
-                                  formula("-sin(pi*y)^2*sin(2*pi*x)+" + bump))};
+    problem.body =
+        VectorField(formula("-" + m + "*pi^2*(2*cos(2*pi*x)*sin(2*pi*y)-4*sin(pi*x)^2*sin(2*pi*y)-2*" + bump +
+                            ")" + slope),
+                    formula("-" + m + "*pi^2*(-2*cos(2*pi*y)*sin(2*pi*x)+4*sin(pi*y)^2*sin(2*pi*x)-2*" +
+                            bump + ")" + slope));
+    const Fixed fixed{
+        VectorField(formula("sin(pi*x)^2*sin(2*pi*y)+" + bump), formula("-sin(pi*y)^2*sin(2*pi*x)+" + bump))};
     const std::string by_x = "pi*cos(pi*x)*sin(pi*y)/" + l, by_y = "pi*sin(pi*x)*cos(pi*y)/" + l,
                       trace = l + "*(" + by_x + "+" + by_y + ")", twist = "pi*sin(2*pi*x)*sin(2*pi*y)",
                       xx = "(2*" + m + "*(" + twist + "+" + by_x + ")+" + trace + ")",
                       yy = "(2*" + m + "*(-" + twist + "+" + by_y + ")+" + trace + ")",
-                      xy = "(" + m + "*(2*pi*sin(pi*x)^2*cos(2*pi*y)-2*pi*sin(pi*y)^2*cos(2*pi*x)+" + by_x + "+" + by_y + "))";
-    const Traction traction{VectorField(formula(xx + "*nx+" + xy + "*ny"), formula(xy + "*nx+" + yy + "*ny"))};
+                      xy = "(" + m + "*(2*pi*sin(pi*x)^2*cos(2*pi*y)-2*pi*sin(pi*y)^2*cos(2*pi*x)+" + by_x +
+                           "+" + by_y + "))";
+    const Traction traction{
+        VectorField(formula(xx + "*nx+" + xy + "*ny"), formula(xy + "*nx+" + yy + "*ny"))};
     problem.boundary = {{"left", fixed}, {"bottom", fixed}, {"right", traction}, {"top", traction}};
     return problem;
   }

@@ -295,7 +295,8 @@ TEST_F(Memory, ThatIsSpokenForIs503UntilASolveEnds) {
 
 TEST_F(Memory, IsNotAskedForWhatIsThereAlready) {
   const auto send = [&] {
-    return client_.Post("/v1/solves", {{"Idempotency-Key", "again"}}, problem_titled("slow"), "application/json");
+    return client_.Post("/v1/solves", {{"Idempotency-Key", "again"}}, problem_titled("slow"),
+                        "application/json");
   };
   const std::string id = json::parse(send()->body).at("id");
   wait_for(id, "running");

@@ -87,7 +87,9 @@ TEST_F(Downloads, HonourTheAcceptHeader) {
     SCOPED_TRACE(file);
     expect_problem(client_.Get(path + file, {{"Accept", "application/json"}}), 406);
     EXPECT_EQ(client_.Get(path + file, {{"Accept", "*/*"}})->status, 200);
-    EXPECT_EQ(client_.Get(path + file, {{"Accept", "text/csv;q=0.5, application/vnd.vtk, image/*;q=0.1"}})->status, 200);
+    EXPECT_EQ(
+        client_.Get(path + file, {{"Accept", "text/csv;q=0.5, application/vnd.vtk, image/*;q=0.1"}})->status,
+        200);
   }
 }
 

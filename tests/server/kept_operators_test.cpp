@@ -12,11 +12,12 @@ namespace {
 
 /// The paper's problem with n × n squares, fixed at the left; the data are of no matter.
 api::Request request(int n, double gap = 0) {
-  return api::parse_request(R"({"model": "membrane", "domain": {"type": "rectangle"}, "mesh": {"divisions": [)" +
-                            std::to_string(n) + "," + std::to_string(n) +
-                            R"(]}, "material": {"stiffness": 1}, "load": {"body": -10}, "boundary": {
+  return api::parse_request(
+      R"({"model": "membrane", "domain": {"type": "rectangle"}, "mesh": {"divisions": [)" +
+      std::to_string(n) + "," + std::to_string(n) +
+      R"(]}, "material": {"stiffness": 1}, "load": {"body": -10}, "boundary": {
                             "left": {"type": "fixed"}, "bottom": {"type": "contact", "gap": )" +
-                            std::to_string(gap) + R"(}}, "scheme": "nonconforming"})");
+      std::to_string(gap) + R"(}}, "scheme": "nonconforming"})");
 }
 
 bool is_reused(KeptOperators& operators, const api::Request& posed) {

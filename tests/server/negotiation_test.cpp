@@ -96,10 +96,12 @@ Request request_for(const std::string& method, const std::string& path) {
 
 TEST(Router, BindsPathParameters) {
   Access access;
-  const Router router({{"GET", "/things/{id}/part", {}, [](const Request& request) {
-                          return Response::json(200, request.path_parameters.at("id"));
-                        }}},
-                      access);
+  const Router router(
+      {{"GET",
+        "/things/{id}/part",
+        {},
+        [](const Request& request) { return Response::json(200, request.path_parameters.at("id")); }}},
+      access);
   Request request = request_for("HEAD", "/things/7/part");
   EXPECT_EQ(router.route(request).body, "7");
   EXPECT_EQ(request.route, "/things/{id}/part");

@@ -268,10 +268,9 @@ TEST_F(SqliteStoreTest, AFullDiskIsFreedByDeleting) {
   const auto size = std::filesystem::file_size(file());
   FaultyDisk::fail(FaultyDisk::Fault::no_room);
   int taken = 0;
-  EXPECT_THROW(
-      for (;; ++taken) store.add(new_job("more" + std::to_string(taken), std::string(100'000, 'x') +
-                                                                             std::to_string(std::rand()))),
-      std::exception);
+  EXPECT_THROW(for (;; ++taken) store.add(new_job("more" + std::to_string(taken),
+                                                  std::string(100'000, 'x') + std::to_string(std::rand()))),
+               std::exception);
   EXPECT_TRUE(store.remove_ended("a"));
   EXPECT_FALSE(store.find("a"));
   EXPECT_EQ(store.find("b")->status, JobStatus::succeeded);
@@ -338,7 +337,8 @@ TEST(FullDisk, IsToldOfAndFreedByDeleting) {
   if (!std::filesystem::exists(seen_from_here + "/data/jobs.sqlite")) GTEST_SKIP() << "cannot look into it";
   httplib::Client client("127.0.0.1", daemon.port());
   client.set_read_timeout(60);
-  const auto reply = client.Post("/v1/solves?wait=60&fields=summary", problem_titled("small"), "application/json");
+  const auto reply =
+      client.Post("/v1/solves?wait=60&fields=summary", problem_titled("small"), "application/json");
   ASSERT_EQ(reply->status, 200) << reply->body;
   const std::string id = nlohmann::json::parse(reply->body).at("id");
   EXPECT_EQ(client.Get("/readyz")->status, 200);

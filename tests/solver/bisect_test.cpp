@@ -3,8 +3,8 @@
 #include <random>
 #include <set>
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include "mesh/import.hpp"
 #include "mesh/polygon.hpp"
@@ -138,7 +138,8 @@ TEST(Bisect, KeepsAnglesOverFortyLevelsTowardsAPoint) {
     EXPECT_GT(smallest_angle(mesh), 0.5 * smallest_angle(coarse) - 1e-9);
     EXPECT_EQ(misfiled_edges(mesh), 0);
     double shortest = mesh.length(0);
-    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e) shortest = std::min(shortest, mesh.length(e));
+    for (int e = 0; e < static_cast<int>(mesh.edges.size()); ++e)
+      shortest = std::min(shortest, mesh.length(e));
     EXPECT_LT(shortest, 1e-11);
     EXPECT_LT(mesh.triangles.size(), 3000u);
   }
@@ -146,8 +147,8 @@ TEST(Bisect, KeepsAnglesOverFortyLevelsTowardsAPoint) {
 
 TEST(Bisect, MakesAtMostFourShapesOfATriangle) {
   std::mt19937 engine(7);
-  Mesh mesh = with_longest_edges_first(
-      import_mesh({{{0, 0}, {1.3, 0.1}, {0.4, 0.9}}, {{{0, 1, 2}}}, {{"ring", {{{0, 1}}, {{1, 2}}, {{2, 0}}}}}}));
+  Mesh mesh = with_longest_edges_first(import_mesh(
+      {{{0, 0}, {1.3, 0.1}, {0.4, 0.9}}, {{{0, 1, 2}}}, {{"ring", {{{0, 1}}, {{1, 2}}, {{2, 0}}}}}}));
   mesh = bisect(mesh, {0});
   for (int level = 0; level < 12; ++level) mesh = bisect(mesh, random_triangles(mesh, engine));
   EXPECT_LE(shapes(mesh).size(), 12u);

@@ -77,12 +77,14 @@ class CertificateFields {
     const ContactResult found = active_set(condensed.contact(), {}, progress_);
     const Eigen::VectorXd x = condensed.traces(found.clearance, progress_);
     Recovered fields = recover(discretization_, x, progress_);
-    solution_ = describe(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
-                         {ActiveSet{}, std::nullopt}, progress_);
-    add_bound(problem, [&] { return certify(discretization_, solution_, x, progress_); }, solution_, progress_);
+    solution_ =
+        describe(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
+                 {ActiveSet{}, std::nullopt}, progress_);
+    add_bound(
+        problem, [&] { return certify(discretization_, solution_, x, progress_); }, solution_, progress_);
     const Eigen::VectorXd clearance = discretization_.clearance.clearance(found.clearance);
-    pair_.emplace(
-        AdmissiblePair{{discretization_, solution_, x, progress_}, {discretization_, solution_.stress, clearance}});
+    pair_.emplace(AdmissiblePair{{discretization_, solution_, x, progress_},
+                                 {discretization_, solution_.stress, clearance}});
     pair_->v.relax(work_of_loads(discretization_), kStepsFromAverage, progress_);
     minimize_potential(discretization_, pair_->v, clearance, pair_->pressure, progress_);
     pair_->of_balance = potential_of_balance(discretization_, progress_);

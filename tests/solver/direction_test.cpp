@@ -108,7 +108,8 @@ TEST(Direction, TheMethodsAgree) {
   }
 }
 
-/// Of a foundation that no edge's normal is the normal of; the fine energy lies between the bounds of the coarse.
+/// Of a foundation that no edge's normal is the normal of; the fine energy lies between the bounds of the
+/// coarse.
 TEST(Direction, TheErrorIsBounded) {
   Problem problem = Slanted{}.problem(Scheme::conforming, Vector(0.2, -1), falling_away);
   std::get<Contact>(problem.boundary.at("floor")).gap = problems::formula("0.4 * x^2");

@@ -167,8 +167,7 @@ TEST(Equilibrium, IsKeptWhereTheLawIsExtreme) {
   Problem problem = problems::block(Scheme::conforming, Pattern::right, 1, 0.49999999);
   problem.domain = Rectangle{};
   problem.mesh = MeshRequest(Divisions{16, 16});
-  problem.boundary = {
-      {"left", Fixed{}}, {"bottom", Contact{0.05}}, {"top", Traction{VectorField(0, -0.01)}}};
+  problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{0.05}}, {"top", Traction{VectorField(0, -0.01)}}};
   Problem of_contrast = problem;
   of_contrast.mesh = MeshRequest(Divisions{4, 4});
   of_contrast.material = YoungPoisson{problems::formula("x < 0.5 ? 1 : 1e9"), Field(0.3), Plane::strain};
@@ -430,7 +429,8 @@ TEST(Certificate, OfAStiffPartBesideASoftOneIsAsGoodAsOfOnePart) {
     problem.domain = Rectangle{};
     problem.mesh.fineness = Divisions{8, 8};
     problem.material = YoungPoisson{problems::formula(young), 0.3, Plane::strain};
-    problem.boundary = {{"left", Fixed{VectorField(0, 0)}}, {"bottom", Contact{0.05}}, {"top", Pressure{0.01}}};
+    problem.boundary = {
+        {"left", Fixed{VectorField(0, 0)}}, {"bottom", Contact{0.05}}, {"top", Pressure{0.01}}};
     return solve(problem, {ActiveSet{}, {}}).summary.error_bound.value().relative;
   };
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {

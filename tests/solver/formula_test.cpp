@@ -17,7 +17,8 @@
 namespace signorini::formula_test {
 namespace {
 
-/// All operations, with smooth, steep, kinked and jumping functions, and some with poles or branch points near by.
+/// All operations, with smooth, steep, kinked and jumping functions, and some with poles or branch points
+/// near by.
 const char* const kFormulas[] = {
     "x*y+1",
     "sin(3*x)*cos(2*y)",
@@ -67,8 +68,8 @@ class RandomTriangles {
 
 Enclosure<TaylorModel> on_triangle(const std::array<Point, 3>& corners) {
   const auto& [a, b, c] = corners;
-  return {TaylorModel::linear({a.x(), b.x(), c.x()}), TaylorModel::linear({a.y(), b.y(), c.y()}), TaylorModel(0.),
-          TaylorModel(0.)};
+  return {TaylorModel::linear({a.x(), b.x(), c.x()}), TaylorModel::linear({a.y(), b.y(), c.y()}),
+          TaylorModel(0.), TaylorModel(0.)};
 }
 
 TEST(Formula, IsEnclosedOnTriangles) {
@@ -83,7 +84,8 @@ TEST(Formula, IsEnclosedOnTriangles) {
       known += std::isfinite(model.remainder());
       for (int k = 0; k < 60; ++k) {
         const Point own = random.inside();
-        const Point at = corners[0] + own.x() * (corners[1] - corners[0]) + own.y() * (corners[2] - corners[0]);
+        const Point at =
+            corners[0] + own.x() * (corners[1] - corners[0]) + own.y() * (corners[2] - corners[0]);
         const double value = formula(at.x(), at.y());
         // A formula that is not finite has no enclosure.
         if (!std::isfinite(value)) {
@@ -110,8 +112,8 @@ TEST(Formula, IsEnclosedWithItsDerivativesOnLines) {
       const auto [a, b, c] = random.triangle();
       const Vector way = b - a;
       const auto on = [&, a = a](const Interval& s) -> Enclosure<Series> {
-        return {Series::line(order, a.x() + way.x() * s, way.x()), Series::line(order, a.y() + way.y() * s, way.y()),
-                Series(order, 0), Series(order, 0)};
+        return {Series::line(order, a.x() + way.x() * s, way.x()),
+                Series::line(order, a.y() + way.y() * s, way.y()), Series(order, 0), Series(order, 0)};
       };
       Enclosure<Series> everywhere = on(Interval(0, 1)), in_middle = on(0.5);
       const Series all = formula.evaluate(everywhere), middle = formula.evaluate(in_middle);
@@ -146,12 +148,16 @@ TEST(Formula, OfAPolynomialIsKnownExactly) {
 
 /// Against the same number, written without cancellation.
 TEST(Formula, KnowsWhatRoundingTakesFromItsValues) {
-  const std::pair<const char*, const char*> pairs[] = {
-      {"(1-cos(1e-8*x))*2e16", "x^2"},        {"(1e6+x)^2-1e12-2e6*x", "x^2"},
-      {"(x+1e16)-1e16", "x"},                 {"sqrt(1e14+2e7*x+x*x)-1e7", "x"},
-      {"log(exp(1e-9*x))*1e9", "x"},          {"cosh(9*x)^2-sinh(9*x)^2", "1"},
-      {"(exp(1e-7*x)-1)*1e7", "x+0.5e-7*x*x"}, {"(x<2 ? x+1e9 : 0)-1e9", "x"},
-      {"tan(atan(1e7+x))-1e7", "x"},          {"min(x+1e12,2e12)-1e12", "x"}};
+  const std::pair<const char*, const char*> pairs[] = {{"(1-cos(1e-8*x))*2e16", "x^2"},
+                                                       {"(1e6+x)^2-1e12-2e6*x", "x^2"},
+                                                       {"(x+1e16)-1e16", "x"},
+                                                       {"sqrt(1e14+2e7*x+x*x)-1e7", "x"},
+                                                       {"log(exp(1e-9*x))*1e9", "x"},
+                                                       {"cosh(9*x)^2-sinh(9*x)^2", "1"},
+                                                       {"(exp(1e-7*x)-1)*1e7", "x+0.5e-7*x*x"},
+                                                       {"(x<2 ? x+1e9 : 0)-1e9", "x"},
+                                                       {"tan(atan(1e7+x))-1e7", "x"},
+                                                       {"min(x+1e12,2e12)-1e12", "x"}};
   for (const auto& [text, plain] : pairs) {
     const Formula formula = parse_formula(text, false), same = parse_formula(plain, false);
     double most = 0;
@@ -169,7 +175,8 @@ TEST(Formula, KnowsWhatRoundingTakesFromItsValues) {
 }
 
 TEST(Formula, TellsWhatItCannotRead) {
-  for (const char* text : {"", "1 +", "(x", "x)", "--3", "2x", "sin x", "sin()", "sin(x, y)", "x ? 1", "nx", "1e400"})
+  for (const char* text :
+       {"", "1 +", "(x", "x)", "--3", "2x", "sin x", "sin()", "sin(x, y)", "x ? 1", "nx", "1e400"})
     EXPECT_THROW(parse_formula(text, false), std::invalid_argument) << text;
   EXPECT_NO_THROW(parse_formula("nx - -ny", true));
 }

@@ -1,8 +1,8 @@
 // What a varying law is cut into.
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "certificate_fields.hpp"
 #include "certify/data/law_pieces.hpp"
@@ -50,9 +50,9 @@ TEST(LawPieces, AreDefiniteIfTheEntriesHaveAFactorInCommon) {
   Observer observer;
   Progress progress(observer, std::nullopt);
   const Mesh mesh = rectangle_mesh(Rectangle{}, Divisions{2, 2}, Pattern::right);
-  for (const std::string& factor : {std::string(kCircle), std::string("(1.5+sin(2.8*(1.5*x+1.6*y-0.5)))"),
-                                    std::string("(abs(x-0.4123) < 0.1 ? 1 : 1000)"),
-                                    std::string("max(0.1, 3*x-abs(y-0.3))")})
+  for (const std::string& factor :
+       {std::string(kCircle), std::string("(1.5+sin(2.8*(1.5*x+1.6*y-0.5)))"),
+        std::string("(abs(x-0.4123) < 0.1 ? 1 : 1000)"), std::string("max(0.1, 3*x-abs(y-0.3))")})
     for (const Material& tensor : tensors_times(factor)) {
       const LawOnMesh laws(tensor, mesh, 1e-6, progress);
       EXPECT_TRUE(laws.unmet().empty()) << factor;
@@ -62,7 +62,8 @@ TEST(LawPieces, AreDefiniteIfTheEntriesHaveAFactorInCommon) {
         const AffineMap map(mesh.corners(t));
         for (const Point& reference : triangle_rule().points) {
           const Eigen::VectorXd own =
-              Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance_at(tensor, map(reference))).eigenvalues();
+              Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance_at(tensor, map(reference)))
+                  .eigenvalues();
           EXPECT_LE(own.maxCoeff(), whole.softest * (1 + 1e-12)) << factor;
           EXPECT_GE(own.minCoeff() * whole.stiffest, 1 - 1e-12) << factor;
         }
@@ -86,7 +87,8 @@ TEST(LawPieces, ThatMayVanishAreTakenAsInPoints) {
   Observer observer;
   Progress progress(observer, std::nullopt);
   const Mesh mesh = rectangle_mesh(Rectangle{}, Divisions{2, 2}, Pattern::right);
-  const Material vanishing = MembraneStiffness::isotropic(problems::formula("abs(x-0.4123)", "/material/stiffness"));
+  const Material vanishing =
+      MembraneStiffness::isotropic(problems::formula("abs(x-0.4123)", "/material/stiffness"));
   const LawOnMesh laws(vanishing, mesh, 1e-6, progress);
   ASSERT_EQ(laws.unmet().size(), 1u);
   EXPECT_NE(laws.unmet()[0].find("not known to be positive definite"), std::string::npos);

@@ -23,8 +23,8 @@ Mesh cut(const std::array<Point, 3>& corners, int times) {
                 times);
 }
 
-/// max over x of min zᵀ energy z, over z with loads z = x, xᵀ mass x = 1 and xᵀ mass linear = 0; its root. The loads of
-/// stresses have no rigid motions.
+/// max over x of min zᵀ energy z, over z with loads z = x, xᵀ mass x = 1 and xᵀ mass linear = 0; its root.
+/// The loads of stresses have no rigid motions.
 template <int D>
 double largest_least(const Eigen::MatrixXd& energy, const Eigen::MatrixXd& loads, const Eigen::MatrixXd& mass,
                      const Eigen::MatrixXd& linear) {
@@ -66,7 +66,8 @@ Eigen::MatrixXd mass_of_tractions(const Mesh& mesh, const std::vector<int>& load
     for (int end = 0; end < 2; ++end)
       for (int other = 0; other < 2; ++other)
         for (int c = 0; c < D; ++c)
-          mass((2 * i + end) * D + c, (2 * i + other) * D + c) = mesh.length(loaded[i]) / (end == other ? 3 : 6);
+          mass((2 * i + end) * D + c, (2 * i + other) * D + c) =
+              mesh.length(loaded[i]) / (end == other ? 3 : 6);
   return mass;
 }
 
@@ -100,8 +101,8 @@ Eigen::MatrixXd motions(const Eigen::MatrixXd& linear) {
   return all;
 }
 
-/// The largest norm of the least stress for a load of norm 1 that is orthogonal to rigid motions. What it has beyond
-/// its linear part on each triangle is orthogonal there to linear functions.
+/// The largest norm of the least stress for a load of norm 1 that is orthogonal to rigid motions. What it has
+/// beyond its linear part on each triangle is orthogonal there to linear functions.
 template <int D>
 double motion_constant_of_loads(const Mesh& mesh, double beyond) {
   const LocalEquilibrium<D> stresses(mesh);
@@ -121,11 +122,13 @@ double motion_constant_of_tractions(const Mesh& mesh, const std::vector<int>& lo
   beyond_motions.setThreshold(1e-9);
   const Eigen::MatrixXd balanced = beyond_motions.kernel();
   const Eigen::Index rows = 2 * D * static_cast<Eigen::Index>(loaded.size());
-  const Eigen::MatrixXd tractions = balanced.topRows(rows), energy = balanced.transpose() * stresses.energy * balanced;
+  const Eigen::MatrixXd tractions = balanced.topRows(rows),
+                        energy = balanced.transpose() * stresses.energy * balanced;
   const Eigen::MatrixXd mass = mass_of_tractions<D>(mesh, loaded);
   // The least energy for tractions x is xᵀ (T energy⁻¹ Tᵀ)⁻¹ x.
   const Eigen::MatrixXd pliancy = tractions * energy.ldlt().solve(tractions.transpose());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(pliancy.inverse(), mass, Eigen::EigenvaluesOnly);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(pliancy.inverse(), mass,
+                                                                        Eigen::EigenvaluesOnly);
   return std::sqrt(eigen.eigenvalues().maxCoeff() + beyond * beyond / 8);
 }
 

@@ -238,8 +238,10 @@ TEST(Limits, TimeLimitBeforeTheBoundKeepsTheSolution) {
   EXPECT_FALSE(solution.summary.error_bound);
   EXPECT_NE(solution.summary.advice.find("solver.time_limit"), std::string::npos) << solution.summary.advice;
   ASSERT_FALSE(solution.summary.notes.empty());
-  EXPECT_TRUE(solution.summary.notes.back().starts_with("there is no error bound")) << solution.summary.notes.back();
-  EXPECT_NEAR(solution.summary.energy, solve(problems::paper(Scheme::conforming, 4), {ActiveSet{}, {}}).summary.energy, 1e-12);
+  EXPECT_TRUE(solution.summary.notes.back().starts_with("there is no error bound"))
+      << solution.summary.notes.back();
+  EXPECT_NEAR(solution.summary.energy,
+              solve(problems::paper(Scheme::conforming, 4), {ActiveSet{}, {}}).summary.energy, 1e-12);
 }
 
 class Stopper : public Observer {

@@ -109,8 +109,8 @@ inline double energy_by(const ErrorBound& fine) {
   return (fine.energy_lower + fine.energy_upper) / 2;
 }
 
-/// The left side of the identity for a coarse solution, its root: √(‖σ − σ_h‖² + 2 (J(v) − J(u)) + 2 <p*, g − u_n>).
-/// `error`: ‖σ − σ_h‖_C from the finer solution.
+/// The left side of the identity for a coarse solution, its root: √(‖σ − σ_h‖² + 2 (J(v) − J(u)) + 2 <p*, g −
+/// u_n>). `error`: ‖σ − σ_h‖_C from the finer solution.
 inline double left_side(double error, const Solution& coarse, const Solution& fine, double energy) {
   const ErrorBound& bound = coarse.summary.error_bound.value();
   return std::sqrt(error * error + 2 * (bound.energy_upper - energy) + contact_term(coarse, fine));

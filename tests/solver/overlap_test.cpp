@@ -1,4 +1,5 @@
-// A foundation that reaches into the body, beside what holds the body: no displacement of finite energy jumps.
+// A foundation that reaches into the body, beside what holds the body: no displacement of finite energy
+// jumps.
 #include <gtest/gtest.h>
 
 #include "problems/elasticity.hpp"
@@ -54,7 +55,8 @@ TEST(Overlap, BesideAFixedPartIsRefused) {
 TEST(Overlap, BesideARollerAlongTheSameLineIsRefused) {
   for (const Scheme scheme : kSchemes) {
     Problem problem = block(scheme);
-    problem.boundary = {{"left", Fixed{}}, {"below", Roller{}}, {"bottom", Contact{problems::formula("-0.1*x")}}};
+    problem.boundary = {
+        {"left", Fixed{}}, {"below", Roller{}}, {"bottom", Contact{problems::formula("-0.1*x")}}};
     expect_refused(problem, "roller");
   }
 }

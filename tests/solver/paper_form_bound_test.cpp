@@ -49,8 +49,8 @@ TEST(PaperFormBound, HoldsForAnIterationThatDiverges) {
 /// A stripe so thin that the cells through which the law jumps are not cut to nothing.
 TEST(PaperFormBound, IsThereForAThinSoftStripe) {
   Problem problem = problems::paper(Scheme::nonconforming, 3);
-  problem.material = MembraneStiffness::isotropic(
-      problems::formula("abs(0.4535961214255773*x + 0.8912073600614354*y - 0.5415828513914194) < 0.003 ? 0.01 : 1"));
+  problem.material = MembraneStiffness::isotropic(problems::formula(
+      "abs(0.4535961214255773*x + 0.8912073600614354*y - 0.5415828513914194) < 0.003 ? 0.01 : 1"));
   problem.boundary = {{"left", Fixed{}}, {"right", Contact{1e6}}};
   const ErrorBound exact = solve(problem, {ActiveSet{}, {}}).summary.error_bound.value(),
                    early = solve(problem, {PaperUzawa{0.5, 10, 0, 1e-5, 3}, {}}).summary.error_bound.value();

@@ -7,19 +7,21 @@
 
 namespace signorini {
 
-/// What is not known of the load and of the traction acts with an unknown force on the triangles and on the edges of
-/// Γ_F; what the pressure lacks, on edges of Γ_C. Some stress carries it from triangle to triangle, along a spanning
-/// forest, to Γ_D, where any traction is free: with forces F and moments M of known size it is at most
+/// What is not known of the load and of the traction acts with an unknown force on the triangles and on the
+/// edges of Γ_F; what the pressure lacks, on edges of Γ_C. Some stress carries it from triangle to triangle,
+/// along a spanning forest, to Γ_D, where any traction is free: with forces F and moments M of known size it
+/// is at most
 ///
 ///     ‖τ‖_C  ≤  (Σ a_T²)^{1/2},    a_T = √c |J|² / √det J · ν |z|,
 ///
-/// z the data of the element that makes the stress on T (tractions on edges, divergence), ν the norm of the map from
-/// them to the stress on the reference triangle, J the Jacobian, c the largest eigenvalue of C; |J| in place of |J|²
-/// for a membrane. It takes hardly any work and is some thousand times too large: enough for what is known to many
-/// digits. For what is not, there is carried_by_motions().
+/// z the data of the element that makes the stress on T (tractions on edges, divergence), ν the norm of the
+/// map from them to the stress on the reference triangle, J the Jacobian, c the largest eigenvalue of C; |J|
+/// in place of |J|² for a membrane. It takes hardly any work and is some thousand times too large: enough for
+/// what is known to many digits. For what is not, there is carried_by_motions().
 ///
-/// Without Γ_D all of it is carried to one triangle, and there meets what p* and the rollers take: p* (1 + r·d) in
-/// place of p*, and W r·n on rollers, W the mean of p*, with the rigid motion r for which G r has the resultant,
+/// Without Γ_D all of it is carried to one triangle, and there meets what p* and the rollers take: p* (1 +
+/// r·d) in place of p*, and W r·n on rollers, W the mean of p*, with the rigid motion r for which G r has the
+/// resultant,
 ///
 ///     G_ij = ∫_{Γ_C} p* (ρ_i·d) (ρ_j·d) + ∫_{rollers} W (ρ_i·n) (ρ_j·n).
 ///
@@ -35,20 +37,22 @@ struct CarriedLoads {
   std::optional<int> root = std::nullopt;
 };
 
-/// `forces`: of loads that are constant on each triangle and act there besides, those of LoadsBroughtBack; none if empty.
+/// `forces`: of loads that are constant on each triangle and act there besides, those of LoadsBroughtBack;
+/// none if empty.
 CarriedLoads carry_uncertain_loads(const Discretization& problem, const LawOnMesh& laws,
                                    const ContactPressure& pressure, const std::vector<double>& forces = {});
 
-/// What is not known of the data on a patch of a membrane, whose triangles are parts of those of the whole: some stress
-/// on each of the latter carries it from part to part until the same force acts as a constant load on the triangle,
-/// which then stands for it in the whole.
+/// What is not known of the data on a patch of a membrane, whose triangles are parts of those of the whole:
+/// some stress on each of the latter carries it from part to part until the same force acts as a constant
+/// load on the triangle, which then stands for it in the whole.
 struct LoadsBroughtBack {
   double square = 0;           ///< of the norm of that stress
   std::vector<double> forces;  ///< of each triangle of the whole, an entry each
 };
 
-/// `parents`: of each triangle of the patch, the one of the whole that it is a part of; there are so many `triangles`.
-LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws, const ContactPressure& pressure,
-                            const std::vector<int>& parents, int triangles);
+/// `parents`: of each triangle of the patch, the one of the whole that it is a part of; there are so many
+/// `triangles`.
+LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws,
+                            const ContactPressure& pressure, const std::vector<int>& parents, int triangles);
 
 }  // namespace signorini

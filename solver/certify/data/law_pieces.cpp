@@ -176,7 +176,8 @@ struct Spectrum {
 
   template <int N, typename Value>
   void add(const EnclosedMatrix<N, Value>& matrix) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> own(middle_of(matrix), Eigen::EigenvaluesOnly);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> own(middle_of(matrix),
+                                                                         Eigen::EigenvaluesOnly);
     const double radius = radius_of(matrix);
     lowest = std::min(lowest, own.eigenvalues().minCoeff() - radius);
     highest = std::max(highest, own.eigenvalues().maxCoeff() + radius);
@@ -196,8 +197,8 @@ Errors errors_of(const EnclosedMatrix<N, Value>& relative, const Spectrum& spect
   return errors;
 }
 
-/// All is compared with the middle M = (Tᵀ T)⁻¹ of the enclosed values: T E Tᵀ is about 1, whatever the sizes of the
-/// entries of E, and where they have a factor in common a multiple of 1.
+/// All is compared with the middle M = (Tᵀ T)⁻¹ of the enclosed values: T E Tᵀ is about 1, whatever the sizes
+/// of the entries of E, and where they have a factor in common a multiple of 1.
 template <int N>
 Quality quality(const std::optional<EnclosedMatrix<N, Series>>& series,
                 const std::vector<EnclosedMatrix<N, TaylorModel>>& branches) {
@@ -221,7 +222,8 @@ Quality quality(const std::optional<EnclosedMatrix<N, Series>>& series,
   std::optional<EnclosedMatrix<N, Series>> relative_series;
   if (series) relative_series = series->congruent(t);
   if (branches.empty()) spectrum.add(*relative_series);
-  const double rounding = kEnclosureRounding * largest_row(Numbers(t.cwiseAbs() * largest_entries * t.cwiseAbs().transpose()));
+  const double rounding =
+      kEnclosureRounding * largest_row(Numbers(t.cwiseAbs() * largest_entries * t.cwiseAbs().transpose()));
   spectrum.lowest -= rounding;
   spectrum.highest += rounding;
   if (!(spectrum.lowest > 0)) return unknown();
@@ -274,7 +276,8 @@ template <typename Value>
 Quality isotropic(const YoungPoisson& material, const std::vector<Value>& fields) {
   const Value &young = fields[0], &poisson = fields[1];
   const Value one = constant_like(young, 1), two = constant_like(young, 2);
-  const bool is_sound = range(young).lower() > 0 && range(poisson).lower() > -1 && range(poisson).upper() < 0.5;
+  const bool is_sound =
+      range(young).lower() > 0 && range(poisson).lower() > -1 && range(poisson).upper() < 0.5;
   if (!is_sound) return unknown();
   const Value of_shear = one + poisson,
               of_volume = material.plane == Plane::strain ? of_shear * (one - two * poisson) : one - poisson;
@@ -284,7 +287,8 @@ Quality isotropic(const YoungPoisson& material, const std::vector<Value>& fields
   Quality all{{}, std::max(range(shear).upper(), range(volume).upper()), 1 / least};
   // The inverses from the data: a series that is inverted twice grows twice.
   for (const Value& own : {shear, volume, young / of_shear, young / of_volume})
-    for (int k = 0; k < kOrders; ++k) all.errors[k] = std::max(all.errors[k], error(own, k) / range(own).lower());
+    for (int k = 0; k < kOrders; ++k)
+      all.errors[k] = std::max(all.errors[k], error(own, k) / range(own).lower());
   return all;
 }
 
@@ -294,7 +298,8 @@ Quality quality(const YoungPoisson& material, const EnclosedFields& fields) {
   if (fields.branches.empty()) return all;
   Models models = fields.branches[0];
   for (const Models& other : fields.branches)
-    for (std::size_t i = 0; fields.branches.size() > 1 && i < models.size(); ++i) models[i] = hull(models[i], other[i]);
+    for (std::size_t i = 0; fields.branches.size() > 1 && i < models.size(); ++i)
+      models[i] = hull(models[i], other[i]);
   return best_of(all, isotropic(material, models));
 }
 
@@ -306,7 +311,9 @@ Quality quality_of(const Material& material, const EnclosedFields& fields) {
 
 int LawPiece::degree_of_rule(int of_fields, double tolerance) const {
   for (const int degree : {5, 6, 8, 10, 18})
-    if (degree >= 2 * of_fields && error_of_rule(degree, of_fields) <= std::max(tolerance, 1.5 * errors.back())) return degree;
+    if (degree >= 2 * of_fields &&
+        error_of_rule(degree, of_fields) <= std::max(tolerance, 1.5 * errors.back()))
+      return degree;
   return 30;
 }
 
@@ -332,8 +339,10 @@ std::vector<LawPiece> law_pieces(const Material& material, const std::array<Poin
     add(cell, share, own, false);
     return true;
   };
-  const auto with_models = [&](EnclosedFields enclosed, const std::array<Point, 3>& at, const Models& models) {
-    enclosed.branches = enclosed.series.empty() ? branches_on_triangle(fields, at) : std::vector<Models>{models};
+  const auto with_models = [&](EnclosedFields enclosed, const std::array<Point, 3>& at,
+                               const Models& models) {
+    enclosed.branches =
+        enclosed.series.empty() ? branches_on_triangle(fields, at) : std::vector<Models>{models};
     return quality_of(material, enclosed);
   };
   const Acceptance accept = [&](const Models& models, double share, double of_cell) {

@@ -81,8 +81,9 @@ MotionRemainder motion_remainder(const std::array<Point, 3>& corners) {
   MotionRemainder own{known.on_triangle * growth<D>(map), {}};
   for (int e = 0; e < 3; ++e) {
     const int there = (e + 3 - map.first) % 3;
-    own.on_edges[e] = known.on_edges[there] * growth<D>(map) *
-                      std::sqrt(length(corners, e) / length(reference.corners, there) / map.jacobian.determinant());
+    own.on_edges[e] =
+        known.on_edges[there] * growth<D>(map) *
+        std::sqrt(length(corners, e) / length(reference.corners, there) / map.jacobian.determinant());
   }
   return own;
 }

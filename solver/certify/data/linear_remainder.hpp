@@ -34,9 +34,9 @@ double linear_remainder(const std::array<Point, 3>& corners);
 template <int D>
 double linear_remainder_on_edge(const std::array<Point, 3>& corners, int e);
 
-/// What a displacement w has beyond a rigid motion R_T w, of a membrane a constant, that depends on it linearly:
-/// ‖w − R_T w‖ ≤ constant · ‖ε(w)‖ on the triangle and on its local edges. R_T is the projection in L2 of the reference
-/// triangle, brought back by w = B⁻ᵀ ŵ, which takes rigid motions to such.
+/// What a displacement w has beyond a rigid motion R_T w, of a membrane a constant, that depends on it
+/// linearly: ‖w − R_T w‖ ≤ constant · ‖ε(w)‖ on the triangle and on its local edges. R_T is the projection in
+/// L2 of the reference triangle, brought back by w = B⁻ᵀ ŵ, which takes rigid motions to such.
 struct MotionRemainder {
   double on_triangle;
   std::array<double, 3> on_edges;
@@ -48,7 +48,8 @@ MotionRemainder motion_remainder(const std::array<Point, 3>& corners);
 /// triangles into which it is cut n times. What a load has beyond its part of that kind counts on each of
 /// them with the constant C / 2ⁿ, for they are similar. Hence C² ≤ C₁² + C² / 4ⁿ, and C² ≤ C₁² / (1 − 4⁻ⁿ).
 /// In the same way C² ≤ C₁² / (1 − 2⁻ⁿ) for tractions on an edge that are linear on its pieces. Those of
-/// motion_remainder() are at most the roots of M₁² + C² / 4ⁿ and M₁² + C² / 2ⁿ. A test computes all for n = 3.
+/// motion_remainder() are at most the roots of M₁² + C² / 4ⁿ and M₁² + C² / 2ⁿ. A test computes all for n
+/// = 3.
 struct ReferenceConstants {
   double load;
   std::array<double, 3> on_edges;

@@ -23,9 +23,11 @@ class Motions {
  public:
   static constexpr int kOwn = D == 1 ? 1 : 3;
 
-  Motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads, std::optional<int> held)
+  Motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads,
+          std::optional<int> held)
       : problem_(problem), mesh_(problem.mesh), laws_(laws), loads_(loads), held_(held) {
-    for (int t = 0; t < problem.triangles(); ++t) remainders_.push_back(motion_remainder<D>(mesh_.corners(t)));
+    for (int t = 0; t < problem.triangles(); ++t)
+      remainders_.push_back(motion_remainder<D>(mesh_.corners(t)));
     for (const BoundaryPart& part : mesh_.boundary)
       if (condition_on<Fixed>(problem.problem, part.name))
         for (const int edge : part.edges) is_fixed_[edge] = true;
@@ -54,7 +56,8 @@ class Motions {
     const MotionRemainder& remainder = remainders_[t];
     double sum = 3 * loads_.on_triangles[t] * remainder.on_triangle / std::sqrt(area(t));
     for (int e = 0; e < 3; ++e)
-      sum += 2 * loads_.on_edges[t][e] * remainder.on_edges[e] / std::sqrt(mesh_.length(mesh_.triangle_edges[t][e]));
+      sum += 2 * loads_.on_edges[t][e] * remainder.on_edges[e] /
+             std::sqrt(mesh_.length(mesh_.triangle_edges[t][e]));
     return sum * std::sqrt(laws_.whole(t).softest);
   }
 
@@ -114,7 +117,8 @@ class Motions {
     return sum;
   }
 
-  void add(ElementSum& sum, const std::array<int, 2>& triangles, const OfPair& matrix, const Point& centre) const {
+  void add(ElementSum& sum, const std::array<int, 2>& triangles, const OfPair& matrix,
+           const Point& centre) const {
     for (const int t : triangles)
       for (int k = 0; k < kOwn; ++k) sum.unknowns.push_back(first(t) < 0 ? -1 : first(t) + k);
     sum.matrix_of.push_back(static_cast<int>(sum.matrix_of.size()));
@@ -140,7 +144,8 @@ class Motions {
     // The integral of the square of a linear function.
     const auto first = at_ends.template topRows<D>(), last = at_ends.template bottomRows<D>();
     return mesh_.length(edge) / weight / 6 *
-           (first.transpose() * first + last.transpose() * last + (first + last).transpose() * (first + last));
+           (first.transpose() * first + last.transpose() * last +
+            (first + last).transpose() * (first + last));
   }
 
   Point middle(int edge) const {

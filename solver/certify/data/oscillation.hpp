@@ -13,8 +13,8 @@ namespace signorini {
 ///
 /// on one triangle, for every displacement w: with the projections Π₁ onto P1 w counts only up to linear
 /// functions, linear_remainder(). p is the linear pressure with the force and the moment of a steep p*. What
-/// the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp. The budget is for a load
-/// that jumps.
+/// the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp. The budget is
+/// for a load that jumps.
 template <int D>
 double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
                    const LawOnMesh& laws, CellBudget& budget);

@@ -76,7 +76,8 @@ class Potential {
   double softness_ = 0;
 };
 
-/// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the more.
+/// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the
+/// more.
 template <int D>
 Eigen::MatrixXd average(const Discretization& problem, const Solution& solution) {
   Potential<D> potential(problem, solution);

@@ -36,8 +36,9 @@ Eigen::Matrix2d turned_compliance_of(const Law<1>& law);
 /// Lowers ½ ‖∇v‖²_M − work(v), where `modulus` is M of a law, by so many steps of the method of conjugate
 /// gradients, scaled by the diagonal.
 ///
-/// A modulus counts with its linear part on each triangle: linear_modulus(). With its value in the centroid only, v is
-/// not one order better than u_h: the bound of the conforming scheme would double where the modulus varies.
+/// A modulus counts with its linear part on each triangle: linear_modulus(). With its value in the centroid
+/// only, v is not one order better than u_h: the bound of the conforming scheme would double where the
+/// modulus varies.
 void relax(const Discretization& problem, Eigen::Matrix2d (*modulus)(const Law<1>&), QuadraticValues& v,
            const Eigen::VectorXd& work, int steps, Progress& progress);
 

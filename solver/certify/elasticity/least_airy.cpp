@@ -43,8 +43,7 @@ Airy airy_of(const Eigen::Vector3d& values) {
 
 class Minimization {
  public:
-  Minimization(const Discretization& problem, const Eigen::MatrixXd& stress,
-               ContactPressure& pressure)
+  Minimization(const Discretization& problem, const Eigen::MatrixXd& stress, ContactPressure& pressure)
       : problem_(problem),
         mesh_(problem.mesh),
         pressure_(pressure),

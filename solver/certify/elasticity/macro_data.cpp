@@ -11,7 +11,8 @@ Eigen::Matrix<double, 6, 1> traction_data(const AffineMap& map, int e,
   return (map.jacobian.inverse() * traction * length).reshaped();
 }
 
-MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t, const AffineMap& map) {
+MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t,
+                     const AffineMap& map) {
   MacroData data;
   for (int e = 0; e < 3; ++e) data.segment<6>(6 * e) = traction_data(map, e, tractions.on(t, e));
   data.tail<12>() = (-map.determinant * map.jacobian.inverse() * balanced_load<2>(problem, t)).reshaped();

@@ -13,6 +13,7 @@ Eigen::Matrix<double, 6, 1> traction_data(const AffineMap& map, int e,
                                           const Eigen::Matrix<double, 2, 3>& traction);
 
 /// The data of σ* on triangle t: its tractions, and −det J J⁻¹ Πf for the divergence.
-MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t, const AffineMap& map);
+MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t,
+                     const AffineMap& map);
 
 }  // namespace signorini

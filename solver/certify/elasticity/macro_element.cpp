@@ -179,7 +179,8 @@ MacroElement::Place place_in(int k, const Point& own, double weight) {
                             bubbles(part(own)),
                             Eigen::Matrix<double, 2, MacroElement::kNodes>::Zero(),
                             Eigen::Matrix<double, MacroElement::kNodes, 1>::Zero()};
-  const Eigen::Matrix<double, 2, 6> gradients = part.jacobian.inverse().transpose() * quadratic_gradients(own);
+  const Eigen::Matrix<double, 2, 6> gradients =
+      part.jacobian.inverse().transpose() * quadratic_gradients(own);
   const std::array<int, 6> nodes = nodes_of(k);
   for (int i = 0; i < 6; ++i) {
     place.displacement_gradients.col(nodes[i]) = gradients.col(i);

@@ -50,9 +50,11 @@ struct MacroElement {
     Eigen::Matrix<double, kNodes, 1> displacement_basis;
   };
 
-  /// The points of the rule on each part; and on each part of what a triangle, in the reference coordinates, has there.
+  /// The points of the rule on each part; and on each part of what a triangle, in the reference coordinates,
+  /// has there.
   static std::vector<Place> places(const std::vector<WeightedPoint>& rule);
-  static std::vector<Place> places(const std::vector<WeightedPoint>& rule, const std::array<Point, 3>& triangle);
+  static std::vector<Place> places(const std::vector<WeightedPoint>& rule,
+                                   const std::array<Point, 3>& triangle);
 
   /// (xx, yy, xy) of the stress with the given coefficients.
   template <typename Coefficients>

@@ -17,8 +17,8 @@ struct MacroRule {
   /// The rule of this degree on each part of the macro-element.
   MacroRule(const Spaces& spaces, int degree);
 
-  /// Makes it the rule that has on each piece of the triangle in each part of the macro-element what the piece needs for
-  /// squares of fields of a degree, with the errors of the pieces.
+  /// Makes it the rule that has on each piece of the triangle in each part of the macro-element what the
+  /// piece needs for squares of fields of a degree, with the errors of the pieces.
   void fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields, double tolerance);
 
   int size() const { return static_cast<int>(places.size()); }
@@ -28,7 +28,7 @@ struct MacroRule {
 
   struct Values {
     Eigen::Matrix<double, 3, MacroElement::kFree> free;  ///< (xx, yy, xy) of the stresses without data
-    Eigen::Matrix<double, 6, 1> basis;                       ///< of P2 on the triangle
+    Eigen::Matrix<double, 6, 1> basis;                   ///< of P2 on the triangle
     Eigen::Matrix<double, 2, 6> gradients;
     LocalVectors stress;  ///< of the row space
   };

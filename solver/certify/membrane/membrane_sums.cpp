@@ -95,7 +95,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
     std::vector<WeightedPoint> points;
     for (const auto& [point, weight] : signorini::rule_of_degree(degree))
       points.push_back({piece.place(point), piece.place.share * weight});
-    integrate(t, Rule(problem_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields), law, sums);
+    integrate(t, Rule(problem_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields),
+              law, sums);
   }
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
@@ -112,7 +113,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   return sums;
 }
 
-void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const {
+void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law,
+                             TriangleSums& sums) const {
   const AffineMap map(problem_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);

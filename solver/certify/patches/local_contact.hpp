@@ -7,7 +7,8 @@
 namespace signorini {
 
 /// The contact problem of a membrane on a patch, solved exactly: that of the whole with a condition on the
-/// cut besides, and with the foundation as near as there. Throws SolveError, NotPositiveDefinite and Cancelled.
+/// cut besides, and with the foundation as near as there. Throws SolveError, NotPositiveDefinite and
+/// Cancelled.
 class LocalContact {
  public:
   LocalContact(const Discretization& whole, const Patch& patch, const Condition& on_cut, Progress& progress);

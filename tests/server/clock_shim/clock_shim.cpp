@@ -7,8 +7,7 @@
 #include <dlfcn.h>
 
 extern "C" int clock_gettime(clockid_t clock, timespec* time) noexcept {
-  static const auto real =
-      reinterpret_cast<int (*)(clockid_t, timespec*)>(dlsym(RTLD_NEXT, "clock_gettime"));
+  static const auto real = reinterpret_cast<int (*)(clockid_t, timespec*)>(dlsym(RTLD_NEXT, "clock_gettime"));
   const int result = real(clock, time);
   const char* const name = std::getenv("SHIFTED_CLOCK");
   std::FILE* const file = clock == CLOCK_REALTIME && name != nullptr ? std::fopen(name, "r") : nullptr;
