@@ -11,6 +11,7 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   out.begin_object();
   if (!head.id.empty()) out.member("id", head.id);
   out.member("status", head.status);
+  if (!head.error_json.empty()) out.key("error").json(head.error_json);
   if (fields.problem) out.key("problem").json(head.problem_json);
   write_summary(out.key("summary"), solution.summary);
   if (fields.mesh) write_mesh(out.key("mesh"), solution.mesh);

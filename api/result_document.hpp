@@ -33,9 +33,10 @@ struct ResultFields {
 /// The part of a result that does not come from the solution. Refers to texts that live as long as it is
 /// written.
 struct ResultHead {
-  std::string_view id;            ///< empty: the member is left out
-  std::string_view status;        ///< `succeeded` or `failed`
-  std::string_view problem_json;  ///< the problem as the client sent it
+  std::string_view id;               ///< empty: the member is left out
+  std::string_view status;           ///< `succeeded` or `failed`
+  std::string_view problem_json;     ///< the problem as the client sent it
+  std::string_view error_json = {};  ///< why it did not succeed; empty: the member is left out
 };
 
 /// Writes the result document (api/README.md, "A result"). Throws InvalidProblem, before it writes anything,

@@ -22,4 +22,8 @@ std::string to_json(const ProblemDetails& details, std::optional<int> status) {
   return json_text(document);
 }
 
+std::string error_to_json(const std::optional<ProblemDetails>& error) {
+  return error ? to_json(*error, status_of(*error)) : "";
+}
+
 }  // namespace signorini::server

@@ -29,4 +29,7 @@ std::optional<int> status_of(const ProblemDetails& details);
 /// `errors` only where there are some.
 std::string to_json(const ProblemDetails& details, std::optional<int> status = std::nullopt);
 
+/// The `error` of a job, with the status that belongs to it; empty if there is none.
+std::string error_to_json(const std::optional<ProblemDetails>& error);
+
 }  // namespace signorini::server

@@ -66,7 +66,8 @@ bool write(const std::string& problem, const Ending& ending, const Form& form, c
     with_flags([&] { form.picture.require_available(*ending.solution); });
     return api::write_picture(*ending.solution, form.picture, sink);
   }
-  const api::ResultHead head{{}, name(ending.status), problem};
+  const std::string error = error_to_json(ending.error);
+  const api::ResultHead head{{}, name(ending.status), problem, error};
   return api::write_document(form.document, sink, [&](api::DocumentWriter& out) {
     api::write_result(out, head, *ending.solution, form.fields);
   });

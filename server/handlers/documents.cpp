@@ -98,7 +98,8 @@ void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
   } else {
     out.null();
   }
-  out.key("error").json(verdict.error ? to_json(*verdict.error, status_of(*verdict.error)) : "null");
+  const std::string error = error_to_json(verdict.error);
+  out.key("error").json(error.empty() ? "null" : error);
   write_links(out.key("links"), job);
   out.end_object();
 }

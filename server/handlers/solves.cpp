@@ -71,7 +71,8 @@ Response result_response(Service& service, const Request& request, JobWithResult
   return job_response(service, request, 200, std::move(ended),
                       [fields](api::DocumentWriter& out, const JobWithResult& solved) {
                         const auto& [job, result] = solved;
-                        const api::ResultHead head{job.id, name(job.status), *result.problem};
+                        const std::string error = error_to_json(job.verdict.error);
+                        const api::ResultHead head{job.id, name(job.status), *result.problem, error};
                         api::write_result(out, head, *result.solution, fields);
                       });
 }

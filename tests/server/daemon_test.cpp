@@ -99,8 +99,14 @@ TEST_F(DaemonTest, ASweepServesWhatItCouldSolve) {
   EXPECT_EQ(result.at("sweep")[0].at("status"), "failed");
   EXPECT_NE(result.at("sweep")[0].at("error").get<std::string>().find("lifts it off"), std::string::npos);
   EXPECT_NEAR(result.at("sweep")[1].at("summary").at("contact").at("force").get<double>(), 2, 1e-10);
-  const json status = status_of(result.at("id"));
-  EXPECT_NE(status.at("error").at("detail").get<std::string>().find("1 of 2 entries"), std::string::npos);
+  const std::string id = result.at("id");
+  const json error = status_of(id).at("error");
+  EXPECT_NE(error.at("detail").get<std::string>().find("1 of 2 entries"), std::string::npos);
+  EXPECT_EQ(result.value("error", json()), error);
+  for (const char* fields : {"", "?fields=sweep", "?fields=summary"}) {
+    const json later = json::parse(client_.Get("/v1/solves/" + id + "/result" + fields)->body);
+    EXPECT_EQ(later.value("error", json()), error) << fields;
+  }
 }
 
 TEST_F(DaemonTest, CancelsASweepBetweenItsEntries) {

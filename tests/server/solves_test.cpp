@@ -50,6 +50,7 @@ TEST_F(Solves, AnswerAWaitWithTheResult) {
   EXPECT_EQ(result.at("summary").at("outcome"), "converged");
   EXPECT_FALSE(result.contains("mesh"));
   EXPECT_FALSE(result.contains("history"));
+  EXPECT_FALSE(result.contains("error"));
 }
 
 TEST_F(Solves, AnswerAWaitThatIsTooShortWithTheStatus) {
@@ -77,6 +78,7 @@ TEST_F(Solves, ServeTheLastIterateOfAMethodThatDiverged) {
   EXPECT_EQ(result.at("history").at("iteration").size(), 3u);
   const json status = status_of(result.at("id"));
   EXPECT_EQ(status.at("error").at("detail"), "take a smaller rho");
+  EXPECT_EQ(result.value("error", json()), status.at("error"));
   EXPECT_EQ(get("/v1/solves/" + std::string(result.at("id")) + "/result")->status, 200);
 }
 
