@@ -15,7 +15,7 @@ Response Cors::answer_preflight(const std::string& methods) {
   response.headers = {
       {"Access-Control-Allow-Methods", methods},
       {"Access-Control-Allow-Headers",
-       "Authorization, Content-Type, Content-Encoding, Idempotency-Key, Last-Event-ID, Prefer, "
+       "Authorization, Content-Type, Content-Encoding, Idempotency-Key, If-Match, Last-Event-ID, Prefer, "
        "Traceparent, X-Request-Id"},
       {"Access-Control-Max-Age", "600"}};
   return response;

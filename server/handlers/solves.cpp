@@ -237,6 +237,14 @@ Response accept(Service& service, const Request& request,
   return answer_later(service, request, id, *wait, fields, std::move(place));
 }
 
+/// A solve has no ETag, so that no condition on one holds (RFC 9110, 13.1.1). Throws HttpError 412.
+void require_match(const Request& request) {
+  const std::optional<std::string> condition = request.header("If-Match");
+  if (!condition || *condition == "*") return;
+  throw HttpError(412, {"precondition-failed", "Precondition failed",
+                        "A solve has no ETag, so that only `If-Match: *` holds; nothing was changed."});
+}
+
 }  // namespace
 
 bool picks_summary_alone(const Query& query) {
@@ -300,6 +308,7 @@ Response delete_solve(Service& service, const Request& request) {
   Response response = Response::empty(204);
   response.job = id_of(request);
   const LogField job("job", find_job(service, request).id);
+  require_match(request);
   switch (service.scheduler.dismiss(id_of(request))) {
     case Dismissal::unknown:
       throw unknown_solve();

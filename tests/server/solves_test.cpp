@@ -193,6 +193,26 @@ TEST_F(Solves, AreRemovedOnceEnded) {
   expect_problem(client_.Delete("/v1/solves/" + id), 404);
 }
 
+TEST_F(Solves, AreLeftByADeleteWhoseConditionDoesNotHold) {
+  const std::string ended =
+      "/v1/solves/" + std::string(json::parse(post("instant", "?wait=5")->body).at("id"));
+  const std::string id = submit("slow");
+  const std::string running = "/v1/solves/" + id;
+  wait_for(id, "running");
+  for (const char* condition : {"\"x\"", "W/\"x\"", "\"x\", \"y\"", "*, \"x\"", "x", ""}) {
+    const httplib::Headers headers{{"If-Match", condition}};
+    for (const std::string& path : {ended, running}) {
+      const json refusal = expect_problem(client_.Delete(path, headers), 412);
+      EXPECT_NE(refusal.value("detail", "").find("If-Match"), std::string::npos) << refusal;
+    }
+  }
+  EXPECT_EQ(get(ended)->status, 200);
+  EXPECT_EQ(status_of(id).at("status"), "running");
+  expect_problem(client_.Delete("/v1/solves/0", {{"If-Match", "\"x\""}}), 404);
+  EXPECT_EQ(client_.Delete(ended, {{"If-Match", "*"}})->status, 204);
+  EXPECT_EQ(client_.Delete(running, {{"If-Match", "*"}})->status, 202);
+}
+
 TEST_F(Solves, AreRefusedWhenTheQueueIsFull) {
   for (int i = 0; i < 6; ++i) {
     wait_for(submit("slow"), i < 2 ? "running" : "queued");
