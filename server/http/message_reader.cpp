@@ -37,6 +37,11 @@ HttpError refusal_of(const error_code& error, const MessageLimits& limits) {
   return bad_request("This is not an HTTP/1.1 request as RFC 9112 has them: " + error.message() + ".");
 }
 
+/// An obsolete fold (RFC 9112, 5.2).
+HttpError folded_trailer() {
+  return bad_request("A line of the trailers begins with a blank.");
+}
+
 std::string text_of(string_view text) {
   return {text.data(), text.size()};
 }
@@ -61,6 +66,7 @@ class MessageReader::Parser : public http::basic_parser<true> {
   /// Reads what it can of the bytes, and takes it off them. Throws HttpError.
   void read(std::string& bytes) {
     error_code error;
+    reading_ = bytes;
     const std::size_t count = put(boost::asio::const_buffer(bytes.data(), bytes.size()), error);
     bytes.erase(0, count);
     if (error && error != http::error::need_more) throw refusal_of(error, limits_);
@@ -99,6 +105,7 @@ class MessageReader::Parser : public http::basic_parser<true> {
     if (std::ranges::any_of(extensions, is_control)) {
       throw bad_request("A chunk extension holds a control character.");
     }
+    if (size == 0) refuse_folds(reading_.substr(extensions.data() + extensions.size() - reading_.data()));
   }
 
   std::size_t on_chunk_body_impl(std::uint64_t, string_view piece, error_code& error) override {
@@ -107,8 +114,17 @@ class MessageReader::Parser : public http::basic_parser<true> {
 
   void on_finish_impl(error_code&) override {}
 
+  /// Of the trailers, which are there to their end, behind the line of the last chunk: Beast would unfold
+  /// them.
+  static void refuse_folds(std::string_view rest) {
+    const std::string_view trailers = rest.substr(0, rest.find("\r\n\r\n"));
+    if (trailers.find("\n ") != std::string_view::npos || trailers.find("\n\t") != std::string_view::npos)
+      throw folded_trailer();
+  }
+
   Message& message_;
   const MessageLimits& limits_;
+  std::string_view reading_;  ///< while it reads
   bool in_body_ = false;
   std::size_t fields_ = 0;
   std::size_t extension_bytes_ = 0;
@@ -198,6 +214,8 @@ void MessageReader::judge_rest_of_chunks() const {
   for (std::size_t end = line; (end = bytes_.find('\n', end)) != std::string::npos; ++end) {
     if (end == line || bytes_[end - 1] != '\r')
       throw bad_request("A line does not end with CR and LF together.");
+    if (end + 1 < bytes_.size() && (bytes_[end + 1] == ' ' || bytes_[end + 1] == '\t'))
+      throw folded_trailer();
   }
   const std::size_t after_zeros = std::min(bytes_.find_first_not_of('0', line), bytes_.size() - 1);
   const bool complete = bytes_.find('\n', line) != std::string::npos;
