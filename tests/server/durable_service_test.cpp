@@ -2,8 +2,10 @@
 
 #include "running_service.hpp"
 
+#include <fstream>
 #include <thread>
 
+#include "child_process.hpp"
 #include "faulty_disk.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
@@ -151,6 +153,26 @@ TEST_F(DurableService, RefusesCleanlyWhileTheDiskIsFullAndRecovers) {
   EXPECT_EQ(client.Get("/readyz")->status, 200);
   wait_for(client, running, "succeeded");
   EXPECT_EQ(post(client, "instant", "?wait=5")->status, 200);
+}
+
+/// What a service that was killed in its first moments can leave.
+TEST(EmptyFile, IsAnEmptyStore) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() + "/jobs.sqlite";
+  std::ofstream(file, std::ios::binary).flush();
+  ChildProcess check({"check", directory.path()});
+  EXPECT_EQ(check.wait(std::chrono::seconds(60)), 0) << check.standard_error();
+  EXPECT_NE(check.standard_output().find("is empty"), std::string::npos) << check.standard_output();
+
+  std::filesystem::remove(file);
+  std::ofstream(file, std::ios::binary).flush();
+  Daemon daemon({"--data-dir", directory.path()});
+  httplib::Client client("127.0.0.1", daemon.port());
+  EXPECT_EQ(client.Get("/readyz")->status, 200);
+  EXPECT_TRUE(json::parse(client.Get("/v1/solves")->body).at("solves").empty());
+  EXPECT_EQ(client.Post("/v1/solves?wait=20", problem_titled("first"), "application/json")->status, 200);
+  EXPECT_EQ(daemon.process().standard_error().find("damaged"), std::string::npos)
+      << daemon.process().standard_error();
 }
 
 }  // namespace
