@@ -6,12 +6,6 @@
 #include <unistd.h>
 
 namespace signorini::server {
-namespace {
-
-/// For the log of a transaction that deletes a result of any size, and what is moved to shrink the file.
-constexpr off_t reserve_bytes = 4 << 20;
-
-}  // namespace
 
 DiskReserve::DiskReserve(std::filesystem::path file) : file_(std::move(file)) {
   room();
@@ -27,11 +21,11 @@ bool DiskReserve::room() {
   if (held_) {
     std::error_code error;
     const std::filesystem::space_info space = std::filesystem::space(file_.parent_path(), error);
-    return error || space.available >= static_cast<std::uintmax_t>(reserve_bytes);
+    return error || space.available >= static_cast<std::uintmax_t>(bytes);
   }
   const int file = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (file < 0) return false;
-  held_ = ::posix_fallocate(file, 0, reserve_bytes) == 0;
+  held_ = ::posix_fallocate(file, 0, bytes) == 0;
   ::close(file);
   if (!held_) spend();
   return held_;

@@ -8,6 +8,9 @@ namespace signorini::server {
 /// writes first. Not safe to be used by several threads at once.
 class DiskReserve {
  public:
+  /// For the log of a transaction that deletes a result of any size, and what is moved to shrink the file.
+  static constexpr int bytes = 4 << 20;
+
   explicit DiskReserve(std::filesystem::path file);
 
   /// Gives the room to whoever writes next.

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
+#include "server/jobs/file_limit.hpp"
 #include "server/jobs/job_rows.hpp"
 #include "server/jobs/repair.hpp"
 #include "server/jobs/result_bytes.hpp"
@@ -238,10 +239,20 @@ std::optional<Claim> SqliteStore::claim() {
 
 bool SqliteStore::finish(const Claim& claim, const Ending& ending) {
   const std::string findings = pack_findings(ending);
+  require_growth(findings.size());
   return write([&] {
     return end(claim.job.id, "status = 'running' AND attempt = " + std::to_string(claim.attempt), ending,
                findings);
   });
+}
+
+/// Throws StoreUnavailable if a result so long would leave too little of what files may grow by: where the
+/// log cannot grow, not even a deletion can be written. The end of a job without a result is always let
+/// through.
+void SqliteStore::require_growth(std::size_t bytes) const {
+  if (bytes == 0) return;
+  if (const auto limit = limit_of_growth(directory_.database(), bytes + DiskReserve::bytes / 2))
+    throw StoreUnavailable(*limit);
 }
 
 bool SqliteStore::give_back(const Claim& claim) {
@@ -529,26 +540,33 @@ std::size_t SqliteStore::damaged() const {
 
 // --- what stands in the way
 
+/// Why there is no room for more than what frees some; with the mutex.
+std::optional<std::string> SqliteStore::hindrance() {
+  if (auto limit = limit_of_growth(directory_.database(), DiskReserve::bytes)) return limit;
+  return reserve_.room() ? std::nullopt : std::optional<std::string>(disk_is_full);
+}
+
 /// On the disk, for more than what frees some.
 bool SqliteStore::has_room() {
   const std::lock_guard lock(trouble_mutex_);
-  return reserve_.room();
+  return !hindrance();
 }
 
 /// Throws StoreUnavailable if nothing more is to be put on the disk.
 void SqliteStore::require_room() {
-  if (has_room()) return;
   const std::lock_guard lock(trouble_mutex_);
-  if (!trouble_) spdlog::error("{}", disk_is_full);
-  trouble_ = disk_is_full;
-  throw StoreUnavailable(disk_is_full);
+  const std::optional<std::string> reason = hindrance();
+  if (!reason) return;
+  if (!trouble_) spdlog::error("{}", *reason);
+  trouble_ = reason;
+  throw StoreUnavailable(*reason);
 }
 
 std::optional<std::string> SqliteStore::trouble() {
   {
     const std::lock_guard lock(trouble_mutex_);
     if (damage_) return damage_;
-    if (!reserve_.room()) return disk_is_full;
+    if (auto reason = hindrance()) return reason;
     if (!trouble_) return std::nullopt;
   }
   try {

@@ -52,8 +52,10 @@ class SqliteStore : public JobStore {
   auto read(const Step& step) const;
 
   void recover();
+  std::optional<std::string> hindrance();
   bool has_room();
   void require_room();
+  void require_growth(std::size_t bytes) const;
   std::optional<std::string> job_with_key(const SQLite::Database& database, const std::string& owner,
                                           const std::string& key, const std::string& problem) const;
   std::size_t queued(const std::string& condition, const std::string& owner);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "faulty_disk.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
@@ -173,6 +174,72 @@ TEST(EmptyFile, IsAnEmptyStore) {
   EXPECT_EQ(client.Post("/v1/solves?wait=20", problem_titled("first"), "application/json")->status, 200);
   EXPECT_EQ(daemon.process().standard_error().find("damaged"), std::string::npos)
       << daemon.process().standard_error();
+}
+
+/// A daemon of which no file may be longer than so many KiB.
+class LimitedFiles : public testing::Test {
+ protected:
+  void start(int kib) {
+    daemon_ = std::make_unique<Daemon>(
+        std::vector<std::string>{"--data-dir", directory_.path()},
+        std::vector<std::string>{"bash", "-c",
+                                 "ulimit -f " + std::to_string(kib) + " && exec \"$0\" \"$@\""});
+    client_ = std::make_unique<httplib::Client>("127.0.0.1", daemon_->port());
+    client_->set_read_timeout(60);
+  }
+
+  httplib::Result post() {
+    return client_->Post("/v1/solves?wait=20&fields=summary", paper_problem(96).dump(), "application/json");
+  }
+
+  int readiness() { return client_->Get("/readyz")->status; }
+
+  /// Solves are taken until they are refused; their number.
+  int fill() {
+    constexpr int more_than_fit = 100;
+    for (int number = 0; number < more_than_fit; ++number) {
+      if (post()->status != 200) return number;
+    }
+    return more_than_fit;
+  }
+
+  void delete_all() {
+    const json page = json::parse(client_->Get("/v1/solves?limit=1000")->body);
+    for (const json& solve : page.at("solves")) {
+      const auto reply = client_->Delete("/v1/solves/" + std::string(solve.at("id")));
+      EXPECT_EQ(reply->status, 204) << reply->body;
+    }
+  }
+
+  TemporaryDirectory directory_;
+  std::unique_ptr<Daemon> daemon_;
+  std::unique_ptr<httplib::Client> client_;
+};
+
+TEST_F(LimitedFiles, AreAsAFullDisk) {
+  start(16 * 1024);
+  EXPECT_EQ(readiness(), 200);
+  const int taken = fill();
+  EXPECT_GT(taken, 0);
+  EXPECT_LT(taken, 100);
+  for (const auto& reply : {post(), client_->Get("/readyz")}) {
+    const json refusal = expect_problem(reply, 503);
+    EXPECT_NE(refusal.at("detail").get<std::string>().find("ulimit -f"), std::string::npos) << refusal;
+  }
+  EXPECT_EQ(client_->Get("/healthz")->status, 200);
+  delete_all();
+  for (int i = 0; i < 500 && readiness() != 200; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(readiness(), 200);
+  EXPECT_EQ(post()->status, 200);
+}
+
+TEST_F(LimitedFiles, ThatHoldNothingAreToldOfAtOnce) {
+  start(1024);
+  const json refusal = expect_problem(client_->Get("/readyz"), 503);
+  EXPECT_NE(refusal.at("detail").get<std::string>().find("ulimit -f"), std::string::npos) << refusal;
+  expect_problem(post(), 503);
+  EXPECT_EQ(client_->Get("/healthz")->status, 200);
 }
 
 }  // namespace
