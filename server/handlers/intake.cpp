@@ -6,8 +6,10 @@
 #include <malloc.h>
 
 #include "api/cbor_document.hpp"
+#include "server/http/content.hpp"
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
+#include "server/http/message.hpp"
 #include "server/jobs/run.hpp"
 
 namespace signorini::server {
@@ -152,6 +154,11 @@ Intake read(const Request& request, const Limits& limits) {
 }
 
 }  // namespace
+
+void require_readable(const Request& request) {
+  is_in_cbor(request);
+  require_known(list_of(request.headers, "Content-Encoding"));
+}
 
 double Intake::memory() const {
   return memory_with_study(estimate, runs);

@@ -21,6 +21,9 @@ struct Intake {
   double memory() const;
 };
 
+/// Whether the head declares a body that take_in() can read. Throws HttpError 415 if it does not.
+void require_readable(const Request& request);
+
 /// Reads the problem in the body of a request, JSON or CBOR. Throws HttpError 415, 413 (bytes or unknowns),
 /// 400, and what api::parse_request throws.
 Intake take_in(Service& service, const Request& request);

@@ -5,6 +5,7 @@
 #include "server/handlers/downloads.hpp"
 #include "server/handlers/events.hpp"
 #include "server/handlers/health.hpp"
+#include "server/handlers/intake.hpp"
 #include "server/handlers/metrics.hpp"
 #include "server/handlers/pages.hpp"
 #include "server/handlers/problems.hpp"
@@ -23,7 +24,8 @@ Router routes(Service& service) {
     return {"GET", pattern, std::move(media_types), with(handle), Audience::clients, has_result};
   };
   std::vector<Route> table{
-      {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result},
+      {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result,
+       require_readable},
       {"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
       {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
@@ -35,8 +37,10 @@ Router routes(Service& service) {
       long_reply("/v1/solves/{id}/study.csv", {"text/csv"}, get_study_csv),
       long_reply("/v1/solves/{id}/history", document_types, get_history),
       {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},
-      {"POST", "/v1/studies", document_types, with(post_study), Audience::clients, has_result},
-      {"POST", "/v1/validate", document_types, with(validate_problem)},
+      {"POST", "/v1/studies", document_types, with(post_study), Audience::clients, has_result,
+       require_readable},
+      {"POST", "/v1/validate", document_types, with(validate_problem), Audience::clients, nullptr,
+       require_readable},
       {"GET", "/v1/examples", document_types, with(list_examples)},
       {"GET", "/v1/examples/{name}", document_types, with(get_example)},
       // Probes send whatever Accept they like.

@@ -36,6 +36,14 @@ HttpError unknown_coding() {
           {{"Accept-Encoding", "gzip, deflate"}}};
 }
 
+/// The one that a body has; nothing if it is plain. Throws HttpError 415.
+std::optional<api::Coding> known(const std::vector<std::string>& codings) {
+  if (codings.empty() || (codings.size() == 1 && codings.front() == "identity")) return std::nullopt;
+  const std::optional<api::Coding> coding = coding_of(codings.front());
+  if (codings.size() > 1 || !coding) throw unknown_coding();
+  return coding;
+}
+
 HttpError broken_body() {
   return {
       400,
@@ -80,11 +88,14 @@ void compress(Response& response) {
   response.headers.emplace_back("Content-Encoding", "gzip");
 }
 
+void require_known(const std::vector<std::string>& codings) {
+  known(codings);
+}
+
 std::string decoded(std::string body, const std::vector<std::string>& codings, std::size_t max_bytes) {
   if (body.size() > max_bytes) throw body_too_large(max_bytes);
-  if (codings.empty() || (codings.size() == 1 && codings.front() == "identity")) return body;
-  const std::optional<api::Coding> coding = coding_of(codings.front());
-  if (codings.size() > 1 || !coding) throw unknown_coding();
+  const std::optional<api::Coding> coding = known(codings);
+  if (!coding) return body;
   std::string text;
   switch (api::inflate(body, *coding, max_bytes, text)) {
     case api::Inflation::whole:

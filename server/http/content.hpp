@@ -17,6 +17,9 @@ std::string compressed(const std::string& text);
 /// Compresses the body by gzip, if there is one and it is long enough to gain by it.
 void compress(Response& response);
 
+/// Throws HttpError 415 for content codings that decoded() does not know.
+void require_known(const std::vector<std::string>& codings);
+
 /// A body without its content codings (RFC 9110, 8.4.1), of at most so many bytes. Throws HttpError 415 if it
 /// has a coding that is not known, 400 if it is not what that says, to its end, and 413 if it is longer.
 std::string decoded(std::string body, const std::vector<std::string>& codings, std::size_t max_bytes);

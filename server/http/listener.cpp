@@ -46,7 +46,7 @@ constexpr std::size_t readers = 8;
 constexpr std::chrono::seconds patience_with_bodies{30};
 
 bool is_compressed(const Message& message) {
-  return !message.body.empty() && !list_of(message, "Content-Encoding").empty();
+  return !message.body.empty() && !list_of(message.headers, "Content-Encoding").empty();
 }
 
 /// Whether it may take long to read what the message brings, or to decode it.
@@ -278,7 +278,7 @@ class Listener::Impl {
       if (message.body_left)
         throw bad_request("The body was not waited for, as the request was to be refused.");
       std::string body =
-          decoded(std::exchange(message.body, {}), list_of(message, "Content-Encoding"), max_bytes);
+          decoded(std::exchange(message.body, {}), list_of(message.headers, "Content-Encoding"), max_bytes);
       body_room.reset();
       return body;
     };

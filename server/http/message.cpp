@@ -170,7 +170,7 @@ void check_length(const Message& message) {
 /// RFC 9112, 6.1 and 6.3.
 void read_coding(Message& message) {
   if (!message.headers.contains("Transfer-Encoding")) return;
-  const std::vector<std::string> codings = list_of(message, "Transfer-Encoding");
+  const std::vector<std::string> codings = list_of(message.headers, "Transfer-Encoding");
   const auto is_chunked = [](const std::string& coding) { return equals(coding, "chunked"); };
   const bool sound = message.version > 10 && !message.headers.contains("Content-Length") &&
                      std::ranges::count_if(codings, is_chunked) == 1 && is_chunked(codings.back());
@@ -219,7 +219,7 @@ void apply_rules(Message& message) {
 
 bool expects_continue(const Message& message) {
   if (message.version == 10) return false;
-  const std::vector<std::string> expected = list_of(message, "Expect");
+  const std::vector<std::string> expected = list_of(message.headers, "Expect");
   const auto is_known = [](const std::string& each) { return equals(each, "100-continue"); };
   if (!std::ranges::all_of(expected, is_known)) {
     throw HttpError(417, {"bad-expectation", "Expectation failed",
@@ -228,10 +228,10 @@ bool expects_continue(const Message& message) {
   return !expected.empty();
 }
 
-std::vector<std::string> list_of(const Message& message, std::string_view name) {
+std::vector<std::string> list_of(const Headers& headers, std::string_view name) {
   constexpr std::string_view blanks = " \t";
   std::vector<std::string> list;
-  const auto [first, last] = message.headers.equal_range(name);
+  const auto [first, last] = headers.equal_range(name);
   for (auto header = first; header != last; ++header) {
     std::string_view rest = header->second;
     while (!rest.empty()) {

@@ -44,6 +44,6 @@ void apply_rules(Message& message);
 bool expects_continue(const Message& message);
 
 /// The elements of all headers of this name (RFC 9110, 5.6.1), which have no comma within.
-std::vector<std::string> list_of(const Message& message, std::string_view name);
+std::vector<std::string> list_of(const Headers& headers, std::string_view name);
 
 }  // namespace signorini::server

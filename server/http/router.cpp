@@ -116,6 +116,7 @@ const Route& Router::require(Request& request, const Found& found) const {
   if (found.route == nullptr) throw method_not_allowed(request.method, found.methods);
   if (request.method == "OPTIONS") return *found.route;
   request.reply_type = negotiate(request, *found.route);
+  if (found.route->judge_body != nullptr) found.route->judge_body(request);
   return *found.route;
 }
 

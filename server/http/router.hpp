@@ -27,6 +27,9 @@ struct Route {
   /// Whether the reply to such a query may be long; it is made and sent where others need not wait for it.
   /// Empty: no.
   bool (*is_long)(const Query& query) = nullptr;
+  /// Throws HttpError for a body that the handler would not take, by what the head says of it. Empty: nothing
+  /// is asked.
+  void (*judge_body)(const Request& request) = nullptr;
 };
 
 /// Told of every reply once it is made, those included that no route has given.
@@ -41,10 +44,10 @@ class Router {
       : routes_(std::move(routes)), access_(access), observer_(std::move(observer)) {}
 
   /// Answers the request by its handler; HEAD is answered as GET, and OPTIONS by what the path allows. Throws
-  /// HttpError 429, 421, 403, 401, 404, 405 (with Allow) and 406.
+  /// HttpError 429, 421, 403, 401, 404, 405 (with Allow), 406 and 415.
   Response route(Request& request) const;
 
-  /// Whether the request will be refused whatever its body says: 401, 404, 405, 406 and the like.
+  /// Whether the request will be refused whatever its body says: 401, 404, 405, 406, 415 and the like.
   bool refuses(Request& request) const;
 
   /// Whether a path is for probes.

@@ -40,6 +40,11 @@ std::string post(const std::string& headers, const std::string& body,
          "\r\n" + body;
 }
 
+/// The head of a request with a body, of the type that the headers say.
+std::string typed(const std::string& headers, const std::string& path = "/v1/validate") {
+  return "POST " + path + " HTTP/1.1\r\nHost: localhost\r\n" + headers + "\r\n";
+}
+
 /// Of a body that may be a request itself.
 std::string sized(const std::string& body) {
   return post("Content-Length: " + std::to_string(body.size()) + "\r\n", body);
@@ -662,6 +667,36 @@ CaseGroup expectations() {
        {"no 100 before 404", post(expect + "Content-Length: 2\r\n", "", "/nothing"), {404}, closes},
        {"no 100 before 405", post(expect + "Content-Length: 2\r\n", "", "/healthz"), {405}, closes},
        {"no 100 before 406", post(expect + "Accept: text/html\r\nContent-Length: 2\r\n", ""), {406}, closes},
+       {"no 100 before 415",
+        typed(expect + "Content-Type: text/plain\r\nContent-Length: 2\r\n"),
+        {415},
+        closes},
+       {"no 100 before 415 without a type", typed(expect + "Content-Length: 2\r\n"), {415}, closes},
+       {"no 100 before 415 of a study",
+        typed(expect + "Content-Type: text/plain\r\nContent-Length: 2\r\n", "/v1/studies"),
+        {415},
+        closes},
+       {"no 100 before 415 of a coding",
+        post(expect + "Content-Encoding: br\r\nContent-Length: 2\r\n", ""),
+        {415},
+        closes,
+        "\r\nAccept-Encoding: gzip, deflate\r\n"},
+       {"no 100 before 415 of two codings",
+        post(expect + "Content-Encoding: gzip, gzip\r\nContent-Length: 2\r\n", "", "/v1/solves"),
+        {415},
+        closes},
+       {"no 100 before 415 of chunks",
+        typed(expect + "Content-Type: text/plain\r\nTransfer-Encoding: chunked\r\n"),
+        {415},
+        closes},
+       {"a long body of another type is not waited for",
+        typed("Content-Type: text/plain\r\nContent-Length: 100000\r\n"),
+        {415},
+        closes},
+       {"a long body of an unknown coding is not waited for",
+        post("Content-Encoding: br\r\nContent-Length: 100000\r\n", ""),
+        {415},
+        closes},
        {"no 100 before 400", post(expect + "Content-Length: x\r\n", ""), {400}, closes},
        {"no 100 before 501", post(expect + "Transfer-Encoding: gzip, chunked\r\n", ""), {501}, closes},
        {"a long body is not waited for in vain",
