@@ -32,7 +32,7 @@ HttpError unauthorized(bool shown) {
 
 /// RFC 6750, 3.1.
 HttpError out_of_scope(const std::string& name, Scope scope) {
-  const std::string wanted = scope == Scope::read ? "read" : "solve";
+  const std::string wanted = scope == Scope::read ? "read" : scope == Scope::solve ? "solve" : "metrics";
   return {403,
           {"insufficient-scope", "The token is not for this",
            "The token of `" + name + "` has no scope `" + wanted + "`, which this takes (--token-file)."},

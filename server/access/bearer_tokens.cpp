@@ -69,14 +69,19 @@ void require_name(const std::string& name) {
 }
 
 std::uint8_t scopes_of(const std::string& words) {
-  static const std::map<std::string, Scope, std::less<>> known{
-      {"read", Scope::read}, {"solve", Scope::solve}, {"admin", Scope::admin}};
+  constexpr auto bit = [](Scope scope) { return static_cast<std::uint8_t>(scope); };
+  static const std::map<std::string, std::uint8_t, std::less<>> known{
+      {"read", bit(Scope::read) | bit(Scope::metrics)},
+      {"solve", bit(Scope::solve)},
+      {"admin", bit(Scope::admin)},
+      {"metrics", bit(Scope::metrics)}};
   std::uint8_t scopes = 0;
   std::istringstream list(words);
   for (std::string word; std::getline(list, word, ',');) {
     const auto scope = known.find(word);
-    if (scope == known.end()) throw BadLine("has an unknown scope; known are `read`, `solve` and `admin`");
-    scopes |= static_cast<std::uint8_t>(scope->second);
+    if (scope == known.end())
+      throw BadLine("has an unknown scope; known are `read`, `solve`, `admin` and `metrics`");
+    scopes |= scope->second;
   }
   return scopes;
 }

@@ -24,10 +24,10 @@ class BearerTokens {
   BearerTokens() = default;
 
   /// From a file with a token a line, of at least 16 visible ASCII characters: `name scopes token`, with
-  /// `scopes` comma-separated out of `read`, `solve` and `admin`, and limits of the name after it: `queue=N`
-  /// jobs that wait, `memory=BYTES` (with a unit: 2gb) for those that run, `rate=N` requests a second. A line
-  /// with a token alone has a name of its own, and `read,solve`. A name may have several tokens, with the
-  /// same limits. The log shows none of them. Throws BadTokenFile.
+  /// `scopes` comma-separated out of `read`, `solve`, `admin` and `metrics`, and limits of the name after it:
+  /// `queue=N` jobs that wait, `memory=BYTES` (with a unit: 2gb) for those that run, `rate=N` requests a
+  /// second. A line with a token alone has a name of its own, and `read,solve`. A name may have several
+  /// tokens, with the same limits. The log shows none of them. Throws BadTokenFile.
   explicit BearerTokens(std::string file);
 
   /// Reads the file again. Throws BadTokenFile; then all stays as it was.

@@ -46,7 +46,7 @@ Router routes(Service& service) {
       // Probes send whatever Accept they like.
       {"GET", "/healthz", {}, with(healthz), Audience::probes},
       {"GET", "/readyz", {}, with(readyz), Audience::probes},
-      {"GET", "/metrics", {}, with(get_metrics)},
+      {"GET", "/metrics", {}, with(get_metrics), Audience::monitors},
       {"GET", "/openapi.json", {"application/json"}, with(get_openapi), Audience::everybody},
       {"GET", "/docs", {"text/html"}, with(get_docs), Audience::everybody},
       // Browsers ask for a style or script by what it is for, and may name neither type.

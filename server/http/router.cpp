@@ -106,12 +106,16 @@ Router::Found Router::find(Request& request) const {
   return found;
 }
 
+/// What does not look only, changes something or costs time.
+Scope Router::Found::scope(const std::string& method) const {
+  if (audience() == Audience::monitors) return Scope::metrics;
+  const bool looks = method == "GET" || method == "HEAD" || method == "OPTIONS";
+  return looks ? Scope::read : Scope::solve;
+}
+
 const Route& Router::require(Request& request, const Found& found) const {
   access_.require_known_host(request);
-  // What does not look only, changes something or costs time.
-  const bool looks = request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
-  if (found.audience() == Audience::clients)
-    request.identity = access_.require(request, looks ? Scope::read : Scope::solve);
+  if (found.wants_token()) request.identity = access_.require(request, found.scope(request.method));
   if (found.methods.empty()) throw not_found();
   if (found.route == nullptr) throw method_not_allowed(request.method, found.methods);
   if (request.method == "OPTIONS") return *found.route;
@@ -136,7 +140,7 @@ Response Router::route(Request& request) const {
   if (!found.methods.empty() && access_.cors.is_preflight(request))
     return Cors::answer_preflight(found.methods);
   const Route& route = require(request, found);
-  if (found.audience() == Audience::clients) access_.count(request.identity);
+  if (found.wants_token()) access_.count(request.identity);
   if (request.method == "OPTIONS") return options(found.methods);
   const SenderFields sender(request);
   return route.handler(request);

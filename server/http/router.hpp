@@ -14,8 +14,9 @@ namespace signorini::server {
 
 using Handler = std::function<Response(const Request&)>;
 
-/// Whom a route is for: clients show a token if the service wants one; nobody counts how often probes ask.
-enum class Audience { clients, everybody, probes };
+/// Whom a route is for: clients and monitors show a token if the service wants one; nobody counts how often
+/// probes ask.
+enum class Audience { clients, monitors, everybody, probes };
 
 /// One line of the route table.
 struct Route {
@@ -70,6 +71,9 @@ class Router {
     const Route* route = nullptr;  ///< for the method of the request; for OPTIONS the first of them
     std::string methods;           ///< of all of them
     Audience audience() const { return route == nullptr ? Audience::clients : route->audience; }
+    bool wants_token() const { return audience() == Audience::clients || audience() == Audience::monitors; }
+    /// What the token is to be for.
+    Scope scope(const std::string& method) const;
   };
 
   Found find(Request& request) const;

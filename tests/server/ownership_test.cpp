@@ -107,6 +107,54 @@ TEST_P(Owners, DoWhatTheirScopesSay) {
   EXPECT_EQ(post(bare, "instant", "?wait=10")->status, 200);
 }
 
+/// A service of which one token is for a monitor.
+class Monitors : public ServiceTest {
+ protected:
+  Monitors() : ServiceTest(options()) {}
+
+  static ServiceOptions options() {
+    static const TemporaryDirectory directory;
+    ServiceOptions options;
+    options.token_file = directory.path() + "/tokens";
+    std::ofstream(options.token_file) << "grafana metrics " << monitor << "\n"
+                                      << "viewer read " << viewer << "\n"
+                                      << "sender solve " << sender << "\n";
+    return options;
+  }
+
+  int status_of_get(const std::string& token, const std::string& path) {
+    return client_.Get(path, {{"Authorization", "Bearer " + token}})->status;
+  }
+
+  static inline const std::string monitor = "grafana-has-this-token", sender = "sender-has-this-token";
+};
+
+TEST_F(Monitors, ReadTheMetricsAndNothingElse) {
+  const httplib::Headers as_monitor{{"Authorization", "Bearer " + monitor}};
+  EXPECT_EQ(status_of_get(monitor, "/metrics"), 200);
+  EXPECT_EQ(client_.Head("/metrics", as_monitor)->status, 200);
+  EXPECT_EQ(client_.Options("/metrics", as_monitor)->status, 204);
+  for (const Route& route : service_.router().table()) {
+    if (route.method != "GET" || route.pattern == "/metrics") continue;
+    std::string path = route.pattern;
+    std::erase_if(path, [](char c) { return c == '{' || c == '}'; });
+    const int status = status_of_get(monitor, path);
+    EXPECT_EQ(status == 403, route.audience == Audience::clients) << route.pattern << ' ' << status;
+  }
+  for (const char* path : {"/nothing", "/metrics/x"}) EXPECT_EQ(status_of_get(monitor, path), 403) << path;
+  for (const char* path : {"/v1/solves", "/v1/studies", "/v1/validate", "/metrics"})
+    expect_problem(client_.Post(path, as_monitor, problem_titled("instant"), "application/json"), 403);
+  for (const char* path : {"/v1/solves/0", "/metrics"}) expect_problem(client_.Delete(path, as_monitor), 403);
+}
+
+TEST_F(Monitors, AreNotAloneWithThem) {
+  EXPECT_EQ(status_of_get(viewer, "/metrics"), 200);
+  expect_problem(get("/metrics"), 401);
+  const auto refused = client_.Get("/metrics", {{"Authorization", "Bearer " + sender}});
+  const json refusal = expect_problem(refused, 403);
+  EXPECT_NE(refusal.at("detail").get<std::string>().find("`metrics`"), std::string::npos) << refusal;
+}
+
 TEST_P(Owners, HaveTheirShareOfTheQueue) {
   ASSERT_EQ(post(bert, "slow")->status, 202);
   for (int i = 0; i < 500 && json::parse(get(bert, "/v1/solves?status=running")->body).at("solves").empty();
