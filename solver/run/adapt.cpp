@@ -14,7 +14,7 @@ namespace signorini {
 namespace {
 
 /// How many times as many triangles a level has, at most, as the one before.
-constexpr double kGrowth = 1.5;
+constexpr double kLargestGrowth = 1.5;
 
 std::string in_words(double number) {
   std::ostringstream text;
@@ -67,12 +67,12 @@ class Levels {
   /// of the last two levels lets expect that this meets the tolerance.
   double growth() const {
     constexpr double margin = 1.03;
-    if (levels_.size() < 2) return kGrowth;
+    if (levels_.size() < 2) return kLargestGrowth;
     const Level &last = levels_.back(), &before = levels_[levels_.size() - 2];
     const double rate = std::log(before.relative / last.relative) /
                         std::log(static_cast<double>(last.triangles) / before.triangles);
-    return rate > 0 ? std::min(kGrowth, margin * std::pow(last.relative / goal_.tolerance, 1 / rate))
-                    : kGrowth;
+    return rate > 0 ? std::min(kLargestGrowth, margin * std::pow(last.relative / goal_.tolerance, 1 / rate))
+                    : kLargestGrowth;
   }
 
   Solution end(Outcome outcome, std::string advice = {}) {
