@@ -17,12 +17,13 @@ inline constexpr std::size_t values_beside_domain = 300'000;
 inline constexpr std::size_t digits = 1000;
 
 // Characters.
-inline constexpr std::size_t title = 200, part_name = 200, expression = 1000;
+inline constexpr std::size_t title = 200, part_name = 200, expression = 1000, tag = 50;
 /// Of all titles and expressions together.
 inline constexpr std::size_t texts = 1'000'000;
 
 inline constexpr std::size_t vertices = most_vertices, arcs = most_arcs, holes = most_holes,
                              local_sizes = most_local_sizes;
+inline constexpr std::size_t tags = 16;
 /// Of the boundary, each of which may have a condition.
 inline constexpr std::size_t parts = vertices + holes;
 

@@ -60,10 +60,11 @@ Request read_request(const Value& value) {
   Request request;
   const auto document = value.object();
   if (!document || !has_short_texts(value)) return request;
-  document->allow({"title", "model", "domain", "mesh", "material", "load", "boundary", "scheme", "solver",
-                   "sweep", "study"},
+  document->allow({"title", "tags", "model", "domain", "mesh", "material", "load", "boundary", "scheme",
+                   "solver", "sweep", "study"},
                   "a problem");
   if (const auto title = document->find("title")) request.title = read_title(*title);
+  if (const auto tags = document->find("tags")) request.tags = read_tags(*tags);
   request.problem = read_problem(*document);
   if (const auto solver = document->find("solver")) request.settings = read_settings(*solver);
   if (const auto sweep = document->find("sweep"))

@@ -15,6 +15,7 @@ namespace signorini::api {
 /// A problem as a client poses it: what to solve, how, and under which title.
 struct Request {
   std::string title;
+  std::vector<std::string> tags;  ///< by which solves are found again
   Problem problem;
   Settings settings;
   std::vector<Variation> sweep;

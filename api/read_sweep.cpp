@@ -71,10 +71,6 @@ Variation read_variation(const Value& patch, const json& load, const json& bound
 
 }  // namespace
 
-std::string read_title(const Value& value) {
-  return value.text(limits::title).value_or("");
-}
-
 std::vector<Variation> read_sweep(const Value& value, const Object& document, const Problem& problem) {
   const std::vector<Value> patches =
       value.list("an array of changes, each an object as the problem itself", limits::sweep_entries);

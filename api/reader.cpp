@@ -25,13 +25,12 @@ std::string found(const json& value) {
   }
 }
 
-/// The number of code points of a text in UTF-8.
+}  // namespace
+
 std::size_t characters(const std::string& text) {
   const auto starts_character = [](char c) { return (c & '\xC0') != '\x80'; };
   return static_cast<std::size_t>(std::ranges::count_if(text, starts_character));
 }
-
-}  // namespace
 
 void Faults::add(std::string pointer, std::string detail) {
   if (faults_.size() < most) {

@@ -16,6 +16,9 @@
 
 namespace signorini::api {
 
+/// The number of code points of a text in UTF-8.
+std::size_t characters(const std::string& text);
+
 /// The faults of a document, in the order found. A reply stays readable, and a body full of faults is soon
 /// refused: behind the hundredth they are only counted, as far as they are looked for at all.
 class Faults {

@@ -16,6 +16,7 @@ std::string to_json(const ProblemDetails& details, std::optional<int> status) {
   document["title"] = details.title;
   if (status) document["status"] = *status;
   document["detail"] = details.detail;
+  if (details.count) document["count"] = *details.count;
   for (const FaultItem& item : details.errors) {
     document["errors"].push_back({{item.key, item.where}, {"detail", item.detail}});
   }

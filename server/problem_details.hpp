@@ -20,13 +20,14 @@ struct ProblemDetails {
   std::string title;   ///< the same for every problem of the kind
   std::string detail;  ///< this occurrence: the cause and the remedy
   std::vector<FaultItem> errors = {};
+  std::optional<std::size_t> count = {};  ///< of a request: how many solves it is about
 };
 
 /// The HTTP status that belongs to the error of a job: that of the refusal, if the problem itself is bad.
 std::optional<int> status_of(const ProblemDetails& details);
 
-/// `{"type", "title", "status", "detail", "errors"}`; `status` only where there is an HTTP status,
-/// `errors` only where there are some.
+/// `{"type", "title", "status", "detail", "count", "errors"}`; `status` only where there is an HTTP status,
+/// `count` and `errors` only where there are some.
 std::string to_json(const ProblemDetails& details, std::optional<int> status = std::nullopt);
 
 /// The `error` of a job, with the status that belongs to it; empty if there is none.

@@ -1,6 +1,7 @@
 #include "server/handlers/documents.hpp"
 
 #include "api/result_members.hpp"
+#include "server/http/query.hpp"
 
 namespace signorini::server {
 namespace {
@@ -55,6 +56,8 @@ std::optional<std::string> link_to_next(const JobPage& page, const ListQuery& qu
   if (!page.more) return std::nullopt;
   std::string link = "/v1/solves?limit=" + std::to_string(query.limit);
   if (query.status) link += "&status=" + std::string(name(*query.status));
+  if (query.tag) link += "&tag=" + percent_encoded(*query.tag);
+  if (query.title) link += "&title=" + percent_encoded(*query.title);
   return link + "&after=" + page.jobs.back().id;
 }
 
@@ -82,11 +85,10 @@ void write_progress_members(DocumentWriter& out, const Progress& progress) {
 
 void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
   const Verdict& verdict = job.verdict;
-  out.begin_object()
-      .member("id", job.id)
-      .member("status", name(job.status))
-      .member("title", job.title)
-      .member("created_at", iso8601(job.created));
+  out.begin_object().member("id", job.id).member("status", name(job.status)).member("title", job.title);
+  out.key("tags").begin_array();
+  for (const std::string& tag : job.tags) out.value(tag);
+  out.end_array().member("created_at", iso8601(job.created));
   member(out, "started_at", text_of(job.started));
   member(out, "finished_at", text_of(job.finished));
   out.key("progress").begin_object();

@@ -6,6 +6,7 @@
 #include "server/handlers/events.hpp"
 #include "server/handlers/health.hpp"
 #include "server/handlers/intake.hpp"
+#include "server/handlers/lists.hpp"
 #include "server/handlers/metrics.hpp"
 #include "server/handlers/pages.hpp"
 #include "server/handlers/problems.hpp"
@@ -27,6 +28,7 @@ Router routes(Service& service) {
       {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result,
        require_readable},
       {"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
+      {"DELETE", "/v1/solves", document_types, with(delete_tagged)},
       {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
       long_reply("/v1/solves/{id}/result", document_types, get_result),

@@ -1,7 +1,6 @@
 #include "server/handlers/solves.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include <spdlog/spdlog.h>
 
@@ -112,6 +111,7 @@ std::string submit(Service& service, const Request& request, Intake intake,
   NewJob job;
   job.id = service.ids.next();
   job.title = std::move(intake.request.title);
+  job.tags = std::move(intake.request.tags);
   job.created = std::chrono::system_clock::now();
   job.problem = std::make_shared<const std::string>(std::move(intake.text));
   job.key = key;
@@ -199,27 +199,6 @@ Response answer_later(Service& service, const Request& request, const std::strin
   return response;
 }
 
-JobStatus status_of_name(const std::string& status_name) {
-  if (const std::optional<JobStatus> status = job_status(status_name)) return *status;
-  throw bad_parameter("status",
-                      "`status` must be one of `queued`, `running`, `succeeded`, `failed`, `cancelled`.");
-}
-
-ListQuery list_query(const Request& request) {
-  allow_only(request.query, {"status", "limit", "after"});
-  ListQuery query;
-  if (!request.identity.sees_all()) query.owner = request.identity.name;
-  if (const auto status = parameter(request.query, "status")) query.status = status_of_name(*status);
-  if (const auto limit = integer_parameter(request.query, "limit", 1, 1000)) {
-    query.limit = static_cast<std::size_t>(*limit);
-  }
-  query.after = parameter(request.query, "after");
-  if (query.after && !is_unique_id(*query.after)) {
-    throw bad_parameter("after", "`after` must be the id of a solve, as `links.next` of a page has it.");
-  }
-  return query;
-}
-
 /// Takes a problem in by one of the functions of intake.hpp, queues it and answers.
 Response accept(Service& service, const Request& request,
                 Intake (*take)(Service& service, const Request& request)) {
@@ -257,18 +236,6 @@ Response post_solve(Service& service, const Request& request) {
 
 Response post_study(Service& service, const Request& request) {
   return accept(service, request, take_in_study);
-}
-
-Response list_solves(Service& service, const Request& request) {
-  const ListQuery query = list_query(request);
-  return document_response(request, 200,
-                           [&scheduler = service.scheduler, page = service.store.list(query),
-                            query](api::DocumentWriter& out) { write_list(out, page, query, scheduler); });
-}
-
-bool asks_for_many(const Query& query) {
-  const std::string limit = parameter(query, "limit").value_or("0");
-  return std::strtol(limit.c_str(), nullptr, 10) > static_cast<long>(ListQuery().limit);
 }
 
 Response get_solve(Service& service, const Request& request) {

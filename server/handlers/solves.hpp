@@ -9,9 +9,6 @@ namespace signorini::server {
 Response post_solve(Service& service, const Request& request);
 /// The same for a problem that must have a study.
 Response post_study(Service& service, const Request& request);
-Response list_solves(Service& service, const Request& request);
-/// Whether a list is to be longer than it is without a word.
-bool asks_for_many(const Query& query);
 Response get_solve(Service& service, const Request& request);
 /// The summary stands in the status: where nothing else is picked, no result is read.
 bool picks_summary_alone(const Query& query);

@@ -52,6 +52,21 @@ std::string percent_decoded(std::string_view text) {
   return plain;
 }
 
+std::string percent_encoded(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF", unreserved = "-._~";
+  std::string encoded;
+  for (const char c : text) {
+    const auto octet = static_cast<unsigned char>(c);
+    const bool is_plain = (octet >= '0' && octet <= '9') || (octet >= 'A' && octet <= 'Z') ||
+                          (octet >= 'a' && octet <= 'z') || unreserved.find(c) != std::string_view::npos;
+    if (is_plain)
+      encoded += c;
+    else
+      encoded.append(1, '%').append(1, digits[octet >> 4]).append(1, digits[octet & 15]);
+  }
+  return encoded;
+}
+
 Query read_query(std::string_view text) {
   Query query;
   while (!text.empty()) {

@@ -13,6 +13,9 @@ namespace signorini::server {
 /// The text in which octets are percent-encoded, and a plus is a blank.
 std::string percent_decoded(std::string_view text);
 
+/// The text as a value in a query, with all but RFC 3986's unreserved characters percent-encoded.
+std::string percent_encoded(std::string_view text);
+
 /// Reads `name=value&...` with percent-encoded names and values, in which a plus is a blank.
 Query read_query(std::string_view text);
 

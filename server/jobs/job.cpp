@@ -67,6 +67,12 @@ bool has_ended(JobStatus status) {
   return status != JobStatus::queued && status != JobStatus::running;
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
 Ending cancelled_ending(const std::string& detail) {
   Ending ending;
   ending.status = JobStatus::cancelled;

@@ -28,6 +28,9 @@ const char* name(JobStatus status);
 std::optional<JobStatus> job_status(std::string_view name);
 bool has_ended(JobStatus status);
 
+/// The text with its ASCII letters in lower case.
+std::string lower_case(std::string text);
+
 /// How a job ended. There is a solution if any iterate was found, also when it did not converge; and an
 /// error unless the job succeeded.
 struct Ending {
@@ -57,6 +60,7 @@ Verdict verdict_of(const Ending& ending);
 struct NewJob {
   std::string id;
   std::string title;
+  std::vector<std::string> tags;
   Time created;
   std::shared_ptr<const std::string> problem;  ///< as the client sent it
   std::optional<std::string> key;  ///< by which the client tells a repeated request from a new one
@@ -71,6 +75,7 @@ struct Job {
   std::string id;
   JobStatus status = JobStatus::queued;
   std::string title;
+  std::vector<std::string> tags;
   std::string trace;  ///< as in NewJob
   std::string owner;  ///< as in NewJob
   Time created;

@@ -2,15 +2,21 @@
 
 #include <stdexcept>
 
+#include <nlohmann/json.hpp>
+
 #include "server/jobs/stored_form.hpp"
 
 namespace signorini::server {
 namespace {
 
+const std::string first_columns =
+    "id, status, title, created, started, finished, attempt, given_back, cancel_asked, verdict, bytes, "
+    "trace, "
+    "owner, ended, damaged";
+
+/// One without what came later is sealed as it was before that.
 const std::string seal =
-    "row_seal(id, status, title, created, started, finished, attempt, given_back, cancel_asked, verdict, "
-    "bytes, "
-    "trace, owner, ended, damaged)";
+    "CASE WHEN tags = '' THEN row_seal(" + first_columns + ") ELSE row_seal(" + first_columns + ", tags) END";
 
 const std::string what_is_a_row = "entry in the list of solves";
 
@@ -25,17 +31,26 @@ Job damaged_job(std::string id, std::string owner) {
 
 }  // namespace
 
-const std::string is_intact = "seal IS NULL OR seal = " + seal;
+std::string pack_list(const std::vector<std::string>& list) {
+  return list.empty() ? "" : nlohmann::json(list).dump();
+}
+
+std::vector<std::string> unpack_list(const std::string& column) {
+  if (column.empty()) return {};
+  return nlohmann::json::parse(column).get<std::vector<std::string>>();
+}
+
+const std::string is_intact = "seal IS NULL OR seal = (" + seal + ")";
 
 const std::string job_columns =
-    "id, status, title, created, started, finished, verdict, trace, owner, " + is_intact;
+    "id, status, title, created, started, finished, verdict, trace, owner, tags, " + is_intact;
 
 void seal_changes(SQLite::Database& database) {
-  const std::string renew = "BEGIN UPDATE jobs SET seal = " + seal + " WHERE id = NEW.id; END;";
+  const std::string renew = "BEGIN UPDATE jobs SET seal = (" + seal + ") WHERE id = NEW.id; END;";
   database.exec(
       "CREATE TEMP TRIGGER seal_new AFTER INSERT ON main.jobs " + renew +
       "CREATE TEMP TRIGGER seal_changed AFTER UPDATE OF status, title, created, started, finished, "
-      "attempt, given_back, cancel_asked, verdict, bytes, trace, owner, ended, damaged ON main.jobs " +
+      "attempt, given_back, cancel_asked, verdict, bytes, trace, owner, ended, damaged, tags ON main.jobs " +
       renew);
 }
 
@@ -44,7 +59,7 @@ Job job_of(const SQLite::Statement& row) {
   job.id = row.getColumn(0).getString();
   job.owner = row.getColumn(8).getString();
   const std::optional<JobStatus> status = job_status(row.getColumn(1).getString());
-  if (!status || row.getColumn(9).getInt() == 0) return damaged_job(job.id, job.owner);
+  if (!status || row.getColumn(10).getInt() == 0) return damaged_job(job.id, job.owner);
   job.status = *status;
   job.title = row.getColumn(2).getString();
   job.created = time_of(row.getColumn(3)).value_or(Time());
@@ -52,6 +67,7 @@ Job job_of(const SQLite::Statement& row) {
   job.finished = time_of(row.getColumn(5));
   job.trace = row.getColumn(7).getString();
   try {
+    job.tags = unpack_list(row.getColumn(9).getString());
     if (!row.isColumnNull(6)) job.verdict = unpack_verdict(bytes_of(row.getColumn(6)));
   } catch (const std::exception&) {
     return damaged_job(job.id, job.owner);
@@ -79,7 +95,7 @@ void fail_as_damaged(SQLite::Database& database, const std::string& id, const st
   prepared(
       database,
       "UPDATE jobs SET title = '', created = ?, started = NULL, finished = NULL, ended = NULL, bytes = 0, "
-      "attempt = 0, given_back = 0, trace = '' WHERE id = ? AND NOT (" +
+      "attempt = 0, given_back = 0, trace = '', tags = '' WHERE id = ? AND NOT (" +
           is_intact + ")",
       now, id)
       .exec();

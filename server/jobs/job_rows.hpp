@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "server/jobs/database.hpp"
 
@@ -9,9 +10,13 @@ namespace signorini::server {
 // The rows of jobs and problems. Each carries a seal over all that it holds, so that bytes which are no
 // longer what was written are not taken for true. One without a seal comes from an older version.
 
+/// A list of texts in a column, and back. Throws std::runtime_error if it is none.
+std::string pack_list(const std::vector<std::string>& list);
+std::vector<std::string> unpack_list(const std::string& column);
+
 /// The columns that job_of() reads.
 extern const std::string job_columns;
-constexpr int job_column_count = 10;
+constexpr int job_column_count = 11;
 
 /// An expression: whether the row of `jobs` is as it was written.
 extern const std::string is_intact;

@@ -1,12 +1,22 @@
 #include "server/jobs/memory_store.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include <spdlog/spdlog.h>
 
 #include "server/log.hpp"
 
 namespace signorini::server {
+namespace {
+
+bool is_asked_for(const Job& job, const ListQuery& query) {
+  return (!query.status || job.status == *query.status) && (!query.owner || job.owner == *query.owner) &&
+         (!query.tag || std::ranges::find(job.tags, *query.tag) != job.tags.end()) &&
+         (!query.title || lower_case(job.title).find(lower_case(*query.title)) != std::string::npos);
+}
+
+}  // namespace
 
 MemoryStore::MemoryStore(const StoreLimits& limits) : limits_(limits) {}
 
@@ -22,6 +32,7 @@ std::string MemoryStore::add(NewJob job) {
   Entry& entry = entries_[job.id];
   entry.job.id = std::move(job.id);
   entry.job.title = std::move(job.title);
+  entry.job.tags = std::move(job.tags);
   entry.job.trace = std::move(job.trace);
   entry.job.owner = std::move(job.owner);
   entry.job.created = job.created;
@@ -93,8 +104,17 @@ Cancellation MemoryStore::cancel(const std::string& id) {
 }
 
 bool MemoryStore::remove_ended(const std::string& id) {
+  return remove_ended(std::span(&id, 1)) == 1;
+}
+
+std::size_t MemoryStore::remove_ended(std::span<const std::string> ids) {
   Removed removed;
   const std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(ids, [&](const std::string& id) { return remove_ended(id, removed); }));
+}
+
+bool MemoryStore::remove_ended(const std::string& id, Removed& removed) {
   const auto place = std::find(ended_.begin(), ended_.end(), id);
   if (place == ended_.end()) return false;
   ended_.erase(place);
@@ -121,8 +141,7 @@ JobPage MemoryStore::list(const ListQuery& query) const {
   auto next = std::make_reverse_iterator(query.after ? entries_.lower_bound(*query.after) : entries_.end());
   for (; next != entries_.rend(); ++next) {
     const Job& job = next->second.job;
-    if (query.status && job.status != *query.status) continue;
-    if (query.owner && job.owner != *query.owner) continue;
+    if (!is_asked_for(job, query)) continue;
     if (page.jobs.size() == query.limit) {
       page.more = true;
       break;
@@ -130,6 +149,14 @@ JobPage MemoryStore::list(const ListQuery& query) const {
     page.jobs.push_back(job);
   }
   return page;
+}
+
+std::vector<std::string> MemoryStore::ids(const ListQuery& query) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> ids;
+  for (const auto& [id, entry] : std::views::reverse(entries_))
+    if (is_asked_for(entry.job, query)) ids.push_back(id);
+  return ids;
 }
 
 JobCounts MemoryStore::count() const {

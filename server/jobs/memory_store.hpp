@@ -22,9 +22,11 @@ class MemoryStore : public JobStore {
   bool give_back(const Claim& claim) override;
   Cancellation cancel(const std::string& id) override;
   bool remove_ended(const std::string& id) override;
+  std::size_t remove_ended(std::span<const std::string> ids) override;
   void tidy() override;
   std::optional<Job> find(const std::string& id) const override;
   JobPage list(const ListQuery& query) const override;
+  std::vector<std::string> ids(const ListQuery& query) const override;
   JobCounts count() const override;
   std::optional<JobResult> result(const std::string& id) override;
   std::size_t result_memory(const std::string&) const override { return 0; }
@@ -56,6 +58,7 @@ class MemoryStore : public JobStore {
   void drop_beyond_limits(Removed& removed);
   void drop_oldest_ended(const char* flag, Removed& removed);
   void remove(const std::string& id, Removed& removed);
+  bool remove_ended(const std::string& id, Removed& removed);
 
   const StoreLimits limits_;
 

@@ -134,6 +134,7 @@ class Rows {
     if (depth == Depth::all) look_into_all();
     for (const char* table : {"results", "idempotency_keys"})
       database_.exec(std::string("DELETE FROM ") + table + " WHERE job NOT IN (SELECT id FROM jobs)");
+    renew_tags();
     return damage_;
   }
 
@@ -155,6 +156,15 @@ class Rows {
           .exec();
       fail(id, "entry in the list of solves");
     }
+  }
+
+  /// What follows from the tags of the jobs.
+  void renew_tags() {
+    const std::string of_jobs =
+        "SELECT CAST(value AS BLOB), jobs.owner, jobs.id FROM jobs, "
+        "json_each(CASE WHEN json_valid(jobs.tags) THEN jobs.tags ELSE '[]' END) WHERE jobs.tags <> ''";
+    database_.exec("DELETE FROM job_tags WHERE (tag, owner, job) NOT IN (" + of_jobs + ")");
+    database_.exec("INSERT OR IGNORE INTO job_tags " + of_jobs);
   }
 
   std::vector<std::string> without_problem(const std::string& condition) const {

@@ -271,6 +271,17 @@ void insert(SQLite::Statement& statement, const Row& row) {
   statement.clearBindings();
 }
 
+/// Columns of `jobs` since rows are sealed.
+constexpr std::size_t sealed_columns = 16;
+
+/// A row of `jobs` that was written before there were the last columns, all of which are texts.
+Row with_defaults(Row row, std::size_t columns) {
+  Value empty;
+  empty.kind = Value::Kind::text;
+  if (row.size() < columns) row.resize(columns, empty);
+  return row;
+}
+
 std::string question_marks(std::size_t count) {
   std::string marks = "?";
   for (std::size_t i = 1; i < count; ++i) marks += ", ?";
@@ -297,7 +308,7 @@ std::size_t salvage(const std::filesystem::path& file, SQLite::Database& whole) 
   for (const std::uint32_t number : pages.newest_first()) {
     for_each_row(pages, number, [&](const Row& row, bool of_table) {
       if (row.empty() || !is_text(row[0])) return;
-      if (!of_table && row.size() == columns) insert(job, row);
+      if (!of_table && row.size() >= sealed_columns) insert(job, with_defaults(row, columns));
       if (of_table && row.size() == 2 && row[1].kind == Value::Kind::blob) insert(problem, row);
       if (of_table && row.size() == 3 && row[2].kind == Value::Kind::blob) insert(piece, row);
       if (!of_table && row.size() == 3 && is_text(row[1]) && is_text(row[2])) insert(key, row);

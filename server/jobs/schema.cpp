@@ -76,6 +76,29 @@ CREATE TABLE state (
   retention INTEGER NOT NULL,               -- retention_clock.hpp
   wall INTEGER NOT NULL
 ) STRICT;
+)sql",
+    // `jobs.tags` is what is sealed; `job_tags` follows from it. When a damaged file is read,
+    // idempotency_keys
+    // are what has three texts: here tags are blobs, and a time stands between the texts.
+    R"sql(
+ALTER TABLE jobs ADD COLUMN tags TEXT NOT NULL DEFAULT '';       -- a JSON array; empty: none
+CREATE INDEX jobs_by_title ON jobs (id, created, owner, title);  -- all that a search by title looks through
+
+CREATE TABLE job_tags (
+  tag BLOB NOT NULL,
+  owner TEXT NOT NULL,
+  job TEXT NOT NULL REFERENCES jobs ON DELETE CASCADE,
+  PRIMARY KEY (tag, owner, job)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX job_tags_of_all ON job_tags (tag, job);
+CREATE INDEX job_tags_by_job ON job_tags (job);
+
+CREATE TRIGGER tag_new AFTER INSERT ON jobs WHEN json_valid(NEW.tags) BEGIN
+  INSERT OR IGNORE INTO job_tags SELECT CAST(value AS BLOB), NEW.owner, NEW.id FROM json_each(NEW.tags);
+END;
+CREATE TRIGGER tag_none AFTER UPDATE OF tags ON jobs BEGIN
+  DELETE FROM job_tags WHERE job = NEW.id;
+END;
 )sql"};
 
 }  // namespace

@@ -81,6 +81,39 @@ std::optional<KeptClock> kept_clock(const SQLite::Database& database) {
   return KeptClock{row.getColumn(0).getInt64(), row.getColumn(1).getInt64()};
 }
 
+/// Ids of jobs, newest first, among which are those that are asked for: of a tag where tags are sorted, of a
+/// title in an index of nothing but titles. Empty: all.
+std::string candidates(const ListQuery& query) {
+  const std::string of_owner = query.owner ? " AND owner = :owner" : "";
+  if (query.tag) return "SELECT job AS candidate FROM job_tags WHERE tag = :tag AND job < :after" + of_owner;
+  if (query.title)
+    return "SELECT id AS candidate FROM jobs INDEXED BY jobs_by_title WHERE id < :after AND "
+           "instr(lower(title), :title)" +
+           of_owner;
+  return "";
+}
+
+/// The columns of all jobs that are asked for, newest first.
+SQLite::Statement selection(const SQLite::Database& database, const std::string& columns,
+                            const ListQuery& query, std::int64_t limit) {
+  const std::string first = candidates(query);
+  std::string sql = "SELECT " + columns + " FROM ";
+  sql += first.empty() ? "jobs" : "(" + first + ") CROSS JOIN jobs ON id = candidate";
+  sql += " WHERE id < :after";
+  if (query.status) sql += " AND status = '" + std::string(name(*query.status)) + "'";
+  if (query.owner) sql += " AND jobs.owner = :owner";
+  if (query.title) sql += " AND instr(lower(title), :title)";
+  sql += std::string(" ORDER BY ") + (first.empty() ? "id" : "candidate") + " DESC LIMIT :limit";
+  SQLite::Statement row(database, sql);
+  const std::string beyond_every_id = "~";
+  row.bind(":after", query.after.value_or(beyond_every_id));
+  row.bind(":limit", limit);
+  if (query.owner) row.bind(":owner", *query.owner);
+  if (query.title) row.bind(":title", lower_case(*query.title));
+  if (query.tag) row.bind(":tag", query.tag->data(), static_cast<int>(query.tag->size()));
+  return row;
+}
+
 Ending attempts_used_up() {
   Ending ending;
   ending.status = JobStatus::failed;
@@ -173,10 +206,10 @@ std::string SqliteStore::add(NewJob job) {
     if (job.share.queue && queued(" AND owner = ?", job.owner) >= *job.share.queue)
       throw QueueFull(*job.share.queue, true);
     prepared(writer_,
-             "INSERT INTO jobs (id, status, title, created, bytes, trace, owner) "
-             "VALUES (?, 'queued', ?, ?, ?, ?, ?)",
+             "INSERT INTO jobs (id, status, title, created, bytes, trace, owner, tags) "
+             "VALUES (?, 'queued', ?, ?, ?, ?, ?, ?)",
              job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed.size()),
-             job.trace, job.owner)
+             job.trace, job.owner, pack_list(job.tags))
         .exec();
     prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed}).exec();
     if (job.key)
@@ -278,11 +311,19 @@ Cancellation SqliteStore::cancel(const std::string& id) {
 }
 
 bool SqliteStore::remove_ended(const std::string& id) {
+  return remove_ended(std::span(&id, 1)) == 1;
+}
+
+std::size_t SqliteStore::remove_ended(std::span<const std::string> ids) {
   return write_what_frees([&] {
-    auto row = prepared(writer_, "DELETE FROM jobs WHERE id = ? AND ended IS NOT NULL RETURNING bytes", id);
-    if (!row.executeStep()) return false;
-    prepared(writer_, "UPDATE state SET ended_bytes = ended_bytes - ?", row.getColumn(0).getInt64()).exec();
-    return true;
+    std::size_t removed = 0;
+    for (const std::string& id : ids) {
+      auto row = prepared(writer_, "DELETE FROM jobs WHERE id = ? AND ended IS NOT NULL RETURNING bytes", id);
+      if (!row.executeStep()) continue;
+      prepared(writer_, "UPDATE state SET ended_bytes = ended_bytes - ?", row.getColumn(0).getInt64()).exec();
+      ++removed;
+    }
+    return removed;
   });
 }
 
@@ -442,20 +483,23 @@ std::optional<Job> SqliteStore::find(const std::string& id) const {
 }
 
 JobPage SqliteStore::list(const ListQuery& query) const {
-  std::string sql = "SELECT " + job_columns + " FROM jobs WHERE id < ?1";
-  if (query.status) sql += " AND status = '" + std::string(name(*query.status)) + "'";
-  if (query.owner) sql += " AND owner = ?3";
-  sql += " ORDER BY id DESC LIMIT ?2";
-  const std::string beyond_every_id = "~";
   return read([&] {
     JobPage page;
-    auto row = prepared(reader_, sql, query.after.value_or(beyond_every_id),
-                        static_cast<std::int64_t>(query.limit) + 1);
-    if (query.owner) row.bind(3, *query.owner);
+    auto row = selection(reader_, job_columns, query, static_cast<std::int64_t>(query.limit) + 1);
     while (row.executeStep()) page.jobs.push_back(job_of(row));
     page.more = page.jobs.size() > query.limit;
     if (page.more) page.jobs.pop_back();
     return page;
+  });
+}
+
+std::vector<std::string> SqliteStore::ids(const ListQuery& query) const {
+  constexpr std::int64_t all = -1;
+  return read([&] {
+    std::vector<std::string> ids;
+    auto row = selection(reader_, "id", query, all);
+    while (row.executeStep()) ids.push_back(row.getColumn(0).getString());
+    return ids;
   });
 }
 

@@ -33,9 +33,11 @@ class SqliteStore : public JobStore {
   bool give_back(const Claim& claim) override;
   Cancellation cancel(const std::string& id) override;
   bool remove_ended(const std::string& id) override;
+  std::size_t remove_ended(std::span<const std::string> ids) override;
   void tidy() override;
   std::optional<Job> find(const std::string& id) const override;
   JobPage list(const ListQuery& query) const override;
+  std::vector<std::string> ids(const ListQuery& query) const override;
   JobCounts count() const override;
   std::optional<JobResult> result(const std::string& id) override;
   std::size_t result_memory(const std::string& id) const override;

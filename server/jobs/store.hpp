@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -57,11 +58,14 @@ struct Claim {
   std::uint64_t attempt = 0;
 };
 
+/// What is asked for of the jobs, by all that is given.
 struct ListQuery {
-  std::optional<JobStatus> status;
-  std::optional<std::string> owner;
+  std::optional<JobStatus> status = {};
+  std::optional<std::string> owner = {};
+  std::optional<std::string> tag = {};
+  std::optional<std::string> title = {};  ///< a part of it; the case of ASCII letters does not matter
   std::size_t limit = 50;
-  std::optional<std::string> after;  ///< only jobs that are older than this id
+  std::optional<std::string> after = {};  ///< only jobs that are older than this id
 };
 
 struct JobPage {
@@ -109,12 +113,18 @@ class JobStore {
   /// Removes a job that has ended. False if there is none.
   virtual bool remove_ended(const std::string& id) = 0;
 
+  /// Removes those of the jobs that have ended, in one step. Returns how many.
+  virtual std::size_t remove_ended(std::span<const std::string> ids) = 0;
+
   /// Drops some of the jobs that ended too long ago, if there are any, and gives back room that nobody needs;
   /// a step that is short.
   virtual void tidy() = 0;
 
   virtual std::optional<Job> find(const std::string& id) const = 0;
   virtual JobPage list(const ListQuery& query) const = 0;
+
+  /// The ids of all jobs that a list would have, in pages without an end; newest first.
+  virtual std::vector<std::string> ids(const ListQuery& query) const = 0;
 
   /// How many jobs there are of each status that any job has.
   virtual JobCounts count() const = 0;

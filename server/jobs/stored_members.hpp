@@ -192,8 +192,7 @@ void serialize(Archive& archive, FaultItem& item) {
 
 template <class Archive>
 void serialize(Archive& archive, ProblemDetails& details) {
-  auto& [kind, title, detail, errors] = details;
-  archive(kind, title, detail, errors);
+  archive(details.kind, details.title, details.detail, details.errors);
 }
 
 template <class Archive>

@@ -28,6 +28,8 @@ TEST(Limits, StandInTheOpenapiDocument) {
   const std::vector<std::pair<const char*, std::size_t>> numbers{
       {"Problem/properties/title/maxLength", limits::title},
       {"Variation/properties/title/maxLength", limits::title},
+      {"Problem/properties/tags/maxItems", limits::tags},
+      {"Tag/maxLength", limits::tag},
       {"Field/maxLength", limits::expression},
       {"Ring/maxItems", limits::vertices},
       {"Polygon/properties/holes/maxItems", limits::holes},

@@ -219,6 +219,17 @@ class Conversation(unittest.TestCase):
         self.call("GET", path, 404)
         self.call("DELETE", path, 404)
 
+    def test_solves_by_tag_and_title(self):
+        for number in range(3):
+            self.solved(self.problem(tags=["study & seals", str(number)], title=f"seal {number}"), "&fields=summary")
+        query = "/v1/solves?" + urllib.parse.urlencode({"tag": "study & seals"})
+        for path in [query, query + "&limit=1", "/v1/solves?title=seal&limit=2"]:
+            found = self.call("GET", path, 200)["solves"]
+            self.assertEqual(found[0]["tags"], ["study & seals", "2"])
+        self.call("DELETE", "/v1/solves", 400)
+        count = self.call("DELETE", query, 409)["count"]
+        self.assertEqual(self.call("DELETE", f"{query}&confirm={count}", 200), {"cancelled": 0, "deleted": 3})
+
     def test_results_in_every_form(self):
         for name in ["paper-conforming", "elastic-block", "gap-sweep", "adaptive-mesh"]:
             elastic = "elastic" in name

@@ -151,6 +151,7 @@ class DamagedFile : public testing::Test {
                            i % 3 == 0 ? std::optional("key" + std::to_string(i)) : std::nullopt);
       job.title = "solve number " + std::to_string(i);
       job.owner = i % 2 == 0 ? "even" : "odd";
+      if (i % 3 == 1) job.tags = {"third", "tag " + std::to_string(i)};
       store.add(job);
       if (i % 10 == 9) continue;
       const std::optional<Claim> claim = store.claim();
@@ -164,6 +165,7 @@ class DamagedFile : public testing::Test {
 
   static std::string in_words(const Job& job) {
     std::ostringstream text;
+    for (const std::string& tag : job.tags) text << tag << '|';
     text << name(job.status) << '|' << job.title << '|' << job.owner << '|' << iso8601(job.created) << '|'
          << (job.started ? iso8601(*job.started) : "") << '|' << (job.finished ? iso8601(*job.finished) : "")
          << '|' << (job.verdict.summary ? job.verdict.summary->iterations : -1);
@@ -202,6 +204,8 @@ class DamagedFile : public testing::Test {
       }
     }
     for (const auto& [id, words] : told_) EXPECT_TRUE(found.contains(id)) << id << " is lost";
+    const auto is_third = [&](const auto& each) { return each.second.starts_with("third|"); };
+    EXPECT_EQ(store.ids({.tag = "third"}).size(), std::ranges::count_if(found, is_third));
     store.add(new_job("new"));
     int runs = 0;
     while (const auto claim = store.claim()) {
@@ -295,7 +299,9 @@ class DamagedLog : public DamagedFile {
  protected:
   DamagedLog() {
     SqliteStore store(directory_.path(), limits_);
-    for (int i = jobs_; i < 2 * jobs_; ++i) {
+    // Not so many that SQLite begins the log anew, and leaves in it what nobody reads.
+    constexpr int jobs_in_log = 25;
+    for (int i = jobs_; i < jobs_ + jobs_in_log; ++i) {
       store.add(new_job(id_of(i), "{\"number\": " + std::to_string(i) + '}'));
       while (const auto claim = store.claim()) store.finish(*claim, success(500));
     }

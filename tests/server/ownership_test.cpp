@@ -96,6 +96,31 @@ TEST_P(Owners, HaveIdempotencyKeysOfTheirOwn) {
   expect_problem(post(anne, "touches", "", "key"), 422);
 }
 
+TEST_P(Owners, FindAndDeleteTheirOwnByTag) {
+  json problem = json::parse(problem_titled("instant"));
+  problem["tags"] = {"t"};
+  const auto post_tagged = [&](const std::string& token) {
+    client_->Post("/v1/solves?wait=10", as(token), problem.dump(), "application/json");
+  };
+  for (const std::string& token : {anne, anne, bert}) post_tagged(token);
+  const auto tagged = [&](const std::string& token, const std::string& filter) {
+    return json::parse(get(token, "/v1/solves" + filter)->body).at("solves").size();
+  };
+  for (const char* filter : {"?tag=t", "?title=insta", "?tag=t&title=t&status=succeeded"}) {
+    EXPECT_EQ(tagged(anne, filter), 2u) << filter;
+    EXPECT_EQ(tagged(bert, filter), 1u) << filter;
+    EXPECT_EQ(tagged(chief, filter), 3u) << filter;
+    EXPECT_EQ(tagged(viewer, filter), 0u) << filter;
+  }
+  expect_problem(remove(viewer, "/v1/solves?tag=t&confirm=0"), 403);
+  EXPECT_EQ(expect_problem(remove(bare, "/v1/solves?tag=t"), 409).at("count"), 0);
+  EXPECT_EQ(expect_problem(remove(bert, "/v1/solves?tag=t"), 409).at("count"), 1);
+  EXPECT_EQ(remove(bert, "/v1/solves?tag=t&confirm=1")->status, 200);
+  EXPECT_EQ(tagged(anne, "?tag=t"), 2u);
+  EXPECT_EQ(expect_problem(remove(chief, "/v1/solves?tag=t"), 409).at("count"), 2);
+  EXPECT_EQ(json::parse(remove(chief, "/v1/solves?tag=t&confirm=2")->body).at("deleted"), 2);
+}
+
 TEST_P(Owners, DoWhatTheirScopesSay) {
   EXPECT_EQ(get(viewer, "/v1/solves")->status, 200);
   const auto refused = post(viewer, "instant");

@@ -125,12 +125,14 @@ TEST_F(SqliteStoreTest, CountsWhatIsThereAlready) {
 
 TEST_F(SqliteStoreTest, LeavesNothingOfWhatIsRemoved) {
   SqliteStore& store = reopen();
-  store.add(new_job("a", "{}", "key"));
+  NewJob job = new_job("a", "{}", "key");
+  job.tags = {"t"};
+  store.add(job);
   store.finish(*store.claim(), success(1000));
   store.remove_ended("a");
   close();
   SQLite::Database raw = database();
-  for (const char* table : {"jobs", "problems", "results", "idempotency_keys"}) {
+  for (const char* table : {"jobs", "job_tags", "problems", "results", "idempotency_keys"}) {
     EXPECT_EQ(raw.execAndGet(std::string("SELECT count(*) FROM ") + table).getInt(), 0) << table;
   }
 }
@@ -174,6 +176,50 @@ TEST_F(SqliteStoreTest, TakesOverTheJobsOfAnOlderVersion) {
   EXPECT_EQ(store.add(new_job("b", "{}", "key")), "b");
   close();
   EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), schema_version());
+}
+
+TEST_F(SqliteStoreTest, TakesOverSealedJobsOfBeforeThereWereTags) {
+  for (const bool damaged : {false, true}) {
+    close();
+    std::filesystem::remove(file());
+    {
+      SQLite::Database old = connect(file());
+      migrate(old, 4);
+      old.exec(
+          "INSERT INTO jobs (id, status, title, created, bytes) VALUES ('a', 'queued', 'old', 7, 0);"
+          "UPDATE jobs SET seal = row_seal(id, status, title, created, started, finished, attempt, "
+          "given_back,"
+          "cancel_asked, verdict, bytes, trace, owner, ended, damaged)");
+      if (damaged) old.exec("UPDATE jobs SET title = 'odd'");
+      SQLite::Statement problem(old, "INSERT INTO problems VALUES ('a', ?)");
+      const std::string packed = pack_text("{}");
+      problem.bind(1, packed.data(), static_cast<int>(packed.size()));
+      problem.exec();
+    }
+    SqliteStore& store = reopen();
+    EXPECT_EQ(store.find("a")->status, damaged ? JobStatus::failed : JobStatus::queued);
+    NewJob job = new_job("b");
+    job.tags = {"t"};
+    store.add(job);
+    EXPECT_EQ(reopen().find("b")->tags, job.tags);
+  }
+}
+
+/// What tags are looked up by follows from the rows, whatever became of it.
+TEST_F(SqliteStoreTest, LooksTagsUpAnewAtEachStart) {
+  NewJob job = new_job("a");
+  job.tags = {"t", "u"};
+  reopen().add(job);
+  close();
+  database().exec("DELETE FROM job_tags WHERE tag = x'74'; INSERT INTO job_tags VALUES (x'76', '', 'a')");
+  SqliteStore& store = reopen();
+  EXPECT_EQ(store.ids({.tag = "t"}), std::vector<std::string>{"a"});
+  EXPECT_EQ(store.ids({.tag = "v"}), std::vector<std::string>{});
+  close();
+  // A row of which the tags are no longer what was written is damaged, and has none.
+  database().exec("UPDATE jobs SET tags = '[\"w\"]'");
+  EXPECT_EQ(reopen().find("a")->verdict.error->kind, "damaged");
+  EXPECT_EQ(reopen().ids({.tag = "w"}), std::vector<std::string>{});
 }
 
 TEST_F(SqliteStoreTest, DoesNotTouchTheJobsOfANewerVersion) {

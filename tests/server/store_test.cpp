@@ -250,6 +250,67 @@ TEST_P(Store, ListsNewestFirstInPages) {
   EXPECT_EQ(ids(store.list(query)), (std::vector<std::string>{"b"}));
 }
 
+TEST_P(Store, FindsJobsByTagAndTitle) {
+  JobStore& store = open(9);
+  const auto add = [&](const std::string& id, const std::string& title, std::vector<std::string> tags,
+                       const std::string& owner) {
+    NewJob job = new_job(id);
+    job.title = title;
+    job.tags = std::move(tags);
+    job.owner = owner;
+    store.add(job);
+  };
+  add("a", "A Seal, 1", {"seals", "x"}, "anne");
+  add("b", "a seal, 2", {"seals"}, "bert");
+  add("c", "a block", {"seal", "SEALS"}, "anne");
+  add("d", "50 % \xc3\x9c", {"seals", "<b>'\"\xf0\x9f\x98\x80"}, "anne");
+  EXPECT_EQ(store.find("d")->tags, (std::vector<std::string>{"seals", "<b>'\"\xf0\x9f\x98\x80"}));
+  EXPECT_TRUE(store.add(new_job("e")) == "e" && store.find("e")->tags.empty());
+
+  const auto found = [&](const ListQuery& query) {
+    ListQuery by_ones = query;
+    by_ones.limit = 1;
+    std::vector<std::string> all;
+    for (JobPage page = store.list(by_ones); !page.jobs.empty(); page = store.list(by_ones)) {
+      all.push_back(page.jobs.front().id);
+      by_ones.after = all.back();
+      if (!page.more) break;
+    }
+    EXPECT_EQ(ids(store.list(query)), all);
+    EXPECT_EQ(store.ids(query), all);
+    return all;
+  };
+  using Ids = std::vector<std::string>;
+  EXPECT_EQ(found({.tag = "seals"}), (Ids{"d", "b", "a"}));
+  EXPECT_EQ(found({.owner = "anne", .tag = "seals"}), (Ids{"d", "a"}));
+  EXPECT_EQ(found({.tag = "<b>'\"\xf0\x9f\x98\x80"}), (Ids{"d"}));
+  EXPECT_EQ(found({.tag = "seal"}), (Ids{"c"}));
+  EXPECT_EQ(found({.tag = "%"}), Ids{});
+  EXPECT_EQ(found({.title = "SEAL"}), (Ids{"b", "a"}));
+  EXPECT_EQ(found({.owner = "anne", .title = "seal"}), (Ids{"a"}));
+  EXPECT_EQ(found({.title = "%"}), (Ids{"d"}));
+  EXPECT_EQ(found({.title = "\xc3\x9c"}), (Ids{"d"}));
+  EXPECT_EQ(found({.tag = "seals", .title = "seal"}), (Ids{"b", "a"}));
+  store.finish(*store.claim(), success());
+  EXPECT_EQ(found({.status = JobStatus::queued, .tag = "seals", .title = "seal"}), (Ids{"b"}));
+  EXPECT_EQ(found({.status = JobStatus::succeeded, .owner = "anne", .title = "seal"}), (Ids{"a"}));
+  EXPECT_EQ(found({.owner = "anne"}), (Ids{"d", "c", "a"}));
+}
+
+TEST_P(Store, RemovesManyThatHaveEndedAtOnce) {
+  JobStore& store = open(9);
+  for (const char* id : {"a", "b", "c", "d"}) {
+    NewJob job = new_job(id);
+    job.tags = {"t"};
+    store.add(job);
+  }
+  store.finish(*store.claim(), success());
+  store.cancel("c");
+  EXPECT_EQ(store.remove_ended(store.ids({.tag = "t"})), 2u);
+  EXPECT_EQ(store.ids({.tag = "t"}), (std::vector<std::string>{"d", "b"}));
+  EXPECT_EQ(store.remove_ended(store.ids({.tag = "t"})), 0u);
+}
+
 TEST_P(Store, GivesEachJobToOneOfManyThreads) {
   constexpr int jobs = 200;
   JobStore& store = open(jobs);

@@ -49,6 +49,7 @@ class Problem:
     """A contact problem."""
 
     title: str | None = None  #: shown in lists
+    tags: Sequence[str] | None = None  #: by which solves are found and deleted together
     model: Literal["membrane", "elasticity"]
     domain: Domain
     mesh: MeshRequest | None = None

@@ -1,0 +1,128 @@
+#include "server/handlers/lists.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <span>
+
+#include <spdlog/spdlog.h>
+
+#include "api/limits.hpp"
+#include "api/problem_members.hpp"
+#include "server/handlers/document_response.hpp"
+#include "server/handlers/documents.hpp"
+#include "server/http/crew.hpp"
+#include "server/http/error.hpp"
+#include "server/http/query.hpp"
+#include "server/log.hpp"
+
+namespace signorini::server {
+namespace {
+
+/// Bytes of a character in UTF-8, at most.
+constexpr std::size_t longest_title = 4 * api::limits::title;
+
+JobStatus status_of_name(const std::string& status_name) {
+  if (const std::optional<JobStatus> status = job_status(status_name)) return *status;
+  throw bad_parameter("status",
+                      "`status` must be one of `queued`, `running`, `succeeded`, `failed`, `cancelled`.");
+}
+
+std::optional<std::string> tag_of(const Request& request) {
+  std::optional<std::string> tag = parameter(request.query, "tag");
+  if (!tag) return tag;
+  if (const auto fault = api::fault_of_tag(*tag)) throw bad_parameter("tag", "`tag` " + *fault + ".");
+  return tag;
+}
+
+ListQuery list_query(const Request& request) {
+  allow_only(request.query, {"status", "tag", "title", "limit", "after"});
+  ListQuery query;
+  if (!request.identity.sees_all()) query.owner = request.identity.name;
+  if (const auto status = parameter(request.query, "status")) query.status = status_of_name(*status);
+  query.tag = tag_of(request);
+  query.title = parameter(request.query, "title");
+  if (query.title && (query.title->empty() || query.title->size() > longest_title))
+    throw bad_parameter(
+        "title", "`title` must be a part of a title: 1 to " + std::to_string(longest_title) + " bytes.");
+  if (const auto limit = integer_parameter(request.query, "limit", 1, 1000)) {
+    query.limit = static_cast<std::size_t>(*limit);
+  }
+  query.after = parameter(request.query, "after");
+  if (query.after && !is_unique_id(*query.after)) {
+    throw bad_parameter("after", "`after` must be the id of a solve, as `links.next` of a page has it.");
+  }
+  return query;
+}
+
+/// What became of many solves that a client does not want any more.
+struct Dismissed {
+  std::size_t cancelled = 0, deleted = 0;
+};
+
+/// Cancels those that have not ended, and removes the others, some at a time.
+Dismissed dismiss(Service& service, std::span<const std::string> ids) {
+  constexpr std::size_t at_once = 100;
+  const Crew::Rest rest;
+  Dismissed dismissed;
+  for (; !ids.empty(); ids = ids.subspan(std::min(at_once, ids.size()))) {
+    const auto some = ids.first(std::min(at_once, ids.size()));
+    dismissed.deleted += service.store.remove_ended(some);
+    for (const std::string& id : some) {
+      if (!service.store.find(id)) continue;
+      const Dismissal dismissal = service.scheduler.dismiss(id);
+      dismissed.cancelled += dismissal == Dismissal::cancelled || dismissal == Dismissal::cancelling;
+      dismissed.deleted += dismissal == Dismissal::removed;
+    }
+  }
+  return dismissed;
+}
+
+/// 409: nothing was done yet.
+HttpError not_confirmed(const std::string& tag, std::size_t count) {
+  const std::string number = std::to_string(count);
+  return {409,
+          {"confirmation-needed",
+           "A confirmation is needed",
+           number + (count == 1 ? " solve has" : " solves have") + " the tag `" + tag +
+               "`, and nothing was done. With `&confirm=" + number +
+               "` those that have not ended are cancelled, and the others deleted.",
+           {},
+           count}};
+}
+
+}  // namespace
+
+Response list_solves(Service& service, const Request& request) {
+  const ListQuery query = list_query(request);
+  return document_response(request, 200,
+                           [&scheduler = service.scheduler, page = service.store.list(query),
+                            query](api::DocumentWriter& out) { write_list(out, page, query, scheduler); });
+}
+
+bool asks_for_many(const Query& query) {
+  const std::string limit = parameter(query, "limit").value_or("0");
+  return std::strtol(limit.c_str(), nullptr, 10) > static_cast<long>(ListQuery().limit);
+}
+
+Response delete_tagged(Service& service, const Request& request) {
+  allow_only(request.query, {"tag", "confirm"});
+  ListQuery query;
+  query.tag = tag_of(request);
+  if (!query.tag) throw bad_parameter("tag", "`tag` must say which solves: DELETE /v1/solves?tag=NAME.");
+  if (!request.identity.sees_all()) query.owner = request.identity.name;
+  constexpr long any_number = std::numeric_limits<int>::max();
+  const auto confirmed = integer_parameter(request.query, "confirm", 0, any_number);
+  const std::vector<std::string> ids = service.store.ids(query);
+  const auto count = static_cast<long>(ids.size());
+  if (confirmed != count) throw not_confirmed(*query.tag, ids.size());
+  const Dismissed dismissed = dismiss(service, ids);
+  spdlog::info("deleted={} cancelled={} by a tag", dismissed.deleted, dismissed.cancelled);
+  return document_response(request, 200, [dismissed](api::DocumentWriter& out) {
+    out.begin_object()
+        .member("cancelled", dismissed.cancelled)
+        .member("deleted", dismissed.deleted)
+        .end_object();
+  });
+}
+
+}  // namespace signorini::server
