@@ -20,6 +20,7 @@ struct ResultFields {
   // Only by name: they follow from the stress, and there are none for a membrane.
   bool principal = false;
   bool von_mises = false;
+  bool error_squares = false;  ///< only by name, if there is an error bound
 
   /// Reads a comma separated list such as `summary,contact`; an empty list is the default set. Throws
   /// InvalidProblem (with the pointer `/fields`) for a name that is unknown, and names those that are known.

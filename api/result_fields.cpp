@@ -18,7 +18,8 @@ const Names<bool ResultFields::*> field_names{{"summary", nullptr},
                                               {"sweep", &ResultFields::sweep},
                                               {"study", &ResultFields::study},
                                               {"principal", &ResultFields::principal},
-                                              {"von_mises", &ResultFields::von_mises}};
+                                              {"von_mises", &ResultFields::von_mises},
+                                              {"error_squares", &ResultFields::error_squares}};
 
 void pick(ResultFields& fields, std::string_view name) {
   const auto entry = std::ranges::find(field_names, name, &Named<bool ResultFields::*>::name);

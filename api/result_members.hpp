@@ -17,6 +17,8 @@ void write_stress(DocumentWriter& out, const Solution& solution);
 void write_principal(DocumentWriter& out, const Solution& solution);
 /// Von Mises' stress at the centroid of each triangle, with the σ_zz of the solution; of an elastic body.
 void write_von_mises(DocumentWriter& out, const Solution& solution);
+/// What each triangle adds to the square of the error bound.
+void write_error_squares(DocumentWriter& out, const Solution& solution);
 void write_contact(DocumentWriter& out, const std::vector<ContactPart>& parts);
 /// `with_contact`: clearances and pressures of every entry too.
 void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact);

@@ -82,6 +82,11 @@ void write_von_mises(DocumentWriter& out, const Solution& solution) {
            [&](std::size_t t) { return von_mises(stress.col(t), solution.out_of_plane_stress[t]); });
 }
 
+void write_error_squares(DocumentWriter& out, const Solution& solution) {
+  const Eigen::VectorXd& squares = solution.error_squares;
+  out.rows({static_cast<std::size_t>(squares.size())}, [&](std::size_t t) { return squares[t]; });
+}
+
 void write_contact(DocumentWriter& out, const std::vector<ContactPart>& parts) {
   out.begin_object();
   for (const ContactPart& part : parts) {

@@ -152,6 +152,15 @@ TEST(WriteResult, WritesTheInvariantsOfTheStressWhenAskedByName) {
   EXPECT_FALSE(usual.contains("von_mises"));
 }
 
+TEST(WriteResult, WritesTheSharesOfTheErrorBoundWhenAskedByNameAndIfThereIsOne) {
+  Solution solution = elastic_solution();
+  const ResultFields fields = ResultFields::parse("error_squares");
+  EXPECT_FALSE(document(solution, fields).contains("error_squares"));
+  solution.error_squares = Eigen::Vector2d(0.25, 1e-36);
+  EXPECT_EQ(document(solution, fields)["error_squares"], json::parse("[0.25, 1e-36]"));
+  EXPECT_FALSE(document(solution, {}).contains("error_squares"));
+}
+
 TEST(WriteResult, RefusesTheInvariantsOfAMembraneBeforeItWrites) {
   for (const std::string member : {"principal", "von_mises"}) {
     const auto fields = ResultFields::parse("summary," + member);
@@ -173,7 +182,7 @@ TEST(ResultFieldsParse, RefusesUnknownNamesAndSaysWhichItKnows) {
     const auto faults = faults_of([&] { ResultFields::parse(list); });
     ASSERT_EQ(pointers_of(faults), std::vector<std::string>{"/fields"}) << list;
     EXPECT_THAT(faults[0].detail, HasSubstr("summary, problem, mesh, displacement, stress, contact, history, "
-                                            "sweep, study, principal, von_mises"));
+                                            "sweep, study, principal, von_mises, error_squares"));
   }
 }
 

@@ -95,6 +95,7 @@ class Solves(WithDaemon):
                     "at_centroids": (result.stress.at_centroids, (count, 3), "float64"),
                     "principal": (result.principal, (count, 2), "float64"),
                     "von_mises": (result.von_mises, (count,), "float64"),
+                    "error_squares": (result.error_squares, (count,), "float64"),
                     "pressure": (result.contact["bottom"].pressure, (9,), "float64"),
                     "open": (result.contact["bottom"].open, (9,), "bool"),
                     "iteration": (result.history.iteration, (result.summary.iterations,), "int32"),

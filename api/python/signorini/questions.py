@@ -16,7 +16,7 @@ AnyProblem = Union[Problem, Mapping[str, Any]]
 #: Whether to show a bar on standard error, or who is told instead: `progress(done, count)`.
 Progress = Union[bool, Callable[[int, int], None]]
 
-_FIELDS = ("problem", "mesh", "displacement", "stress", "contact", "history", "sweep", "study")
+_FIELDS = ("problem", "mesh", "displacement", "stress", "contact", "history", "sweep", "study", "error_squares")
 _ELASTIC_FIELDS = ("principal", "von_mises")
 
 

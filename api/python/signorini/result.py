@@ -98,6 +98,11 @@ class Result:
         return self._reals("von_mises")
 
     @property
+    def error_squares(self) -> Reals:
+        """(m,), what each triangle adds to the square of the error bound, energy per thickness; if there is a bound."""
+        return self._reals("error_squares")
+
+    @property
     def contact(self) -> dict[str, ContactPart]:
         """The contact boundary, by part."""
         parts: dict[str, ContactPart] = read(dict[str, ContactPart], self._member("contact"))
