@@ -11,9 +11,10 @@ namespace signorini::api {
 /// zlib's state and the room that it writes to.
 class Gzip::Deflate {
  public:
-  Deflate() {
+  explicit Deflate(Effort effort) {
     constexpr int gzip_with_largest_window = 16 + MAX_WBITS, usual_memory = 8;
-    if (deflateInit2(&stream_, Z_BEST_SPEED, Z_DEFLATED, gzip_with_largest_window, usual_memory,
+    const int level = effort == Effort::least ? Z_BEST_SPEED : Z_BEST_COMPRESSION;
+    if (deflateInit2(&stream_, level, Z_DEFLATED, gzip_with_largest_window, usual_memory,
                      Z_DEFAULT_STRATEGY) != Z_OK)
       throw std::bad_alloc();
   }
@@ -40,7 +41,7 @@ class Gzip::Deflate {
   std::array<char, 32 * 1024> out_;
 };
 
-Gzip::Gzip(const Sink& sink) : sink_(sink), deflate_(std::make_unique<Deflate>()) {}
+Gzip::Gzip(const Sink& sink, Effort effort) : sink_(sink), deflate_(std::make_unique<Deflate>(effort)) {}
 
 Gzip::~Gzip() = default;
 

@@ -8,12 +8,15 @@
 
 namespace signorini::api {
 
-/// Compresses a document on its way to a sink, as one gzip member (RFC 1952) at zlib's fastest level: results
-/// are written faster than they can be compressed well. Takes about 300 KiB, however long the document is.
+/// `least`: results are written faster than they can be compressed well; `most`: for what is compressed once.
+enum class Effort { least, most };
+
+/// Compresses a document on its way to a sink, as one gzip member (RFC 1952). Takes about 300 KiB, however
+/// long the document is.
 class Gzip {
  public:
   /// The sink must outlive the object.
-  explicit Gzip(const Sink& sink);
+  explicit Gzip(const Sink& sink, Effort effort = Effort::least);
   ~Gzip();
 
   Gzip(const Gzip&) = delete;

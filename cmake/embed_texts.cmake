@@ -1,8 +1,9 @@
 # Writes OUTPUT, the C++ source of FUNCTION, which returns the texts of the list FILES by name: `const
 # std::vector<TYPE>& FUNCTION()` in the namespace NAMESPACE, declared in HEADER; TYPE is built from a name, the
-# file's without `.json`, and a text.
+# file's without `.json`, and a text. If LIGHT is true, the texts come without indentation and without lines that are
+# comments (`//`): browsers load less.
 
-# Raw string literals: compilers guarantee 65536 characters each.
+# Raw string literals that follow each other are one; compilers guarantee 65536 characters each.
 set(longest_literal 65536)
 
 set(entries "")
@@ -10,11 +11,18 @@ foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
   string(REGEX REPLACE "[.]json$" "" name ${name})
   file(READ ${file} text)
-  string(LENGTH "${text}" length)
-  if(length GREATER longest_literal)
-    message(FATAL_ERROR "${file} has ${length} characters; an embedded text may have ${longest_literal}.")
+  if(LIGHT)
+    string(REGEX REPLACE "\n[ \t]+" "\n" text "\n${text}")
+    string(REGEX REPLACE "\n//[^\n]*" "" text "${text}")
+    string(REGEX REPLACE "^\n+" "" text "${text}")
   endif()
-  string(APPEND entries "      {\"${name}\", R\"embedded(${text})embedded\"},\n")
+  string(LENGTH "${text}" length)
+  set(literals "")
+  foreach(begin RANGE 0 ${length} ${longest_literal})
+    string(SUBSTRING "${text}" ${begin} ${longest_literal} piece)
+    string(APPEND literals " R\"embedded(${piece})embedded\"")
+  endforeach()
+  string(APPEND entries "      {\"${name}\",${literals}},\n")
 endforeach()
 
 file(WRITE ${OUTPUT} "// Written by cmake/embed_texts.cmake.

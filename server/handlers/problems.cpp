@@ -1,16 +1,32 @@
 #include "server/handlers/problems.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "api/examples.hpp"
 #include "api/result_document.hpp"
+#include "server/gallery/example_pictures.hpp"
 #include "server/handlers/document_response.hpp"
+#include "server/handlers/downloads.hpp"
 #include "server/handlers/intake.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 #include "solve.hpp"
 
 namespace signorini::server {
+namespace {
+
+/// The example of the path. Throws HttpError 404.
+const api::Example& find_example(const Request& request) {
+  const std::string& wanted = request.path_parameters.at("name");
+  const auto found = std::ranges::find(api::examples(), wanted, &api::Example::name);
+  if (found != api::examples().end()) return *found;
+  throw HttpError(404, {"unknown-example", "Unknown example",
+                        "There is no example of this name; GET /v1/examples lists them."});
+}
+
+}  // namespace
 
 Response validate_problem(Service& service, const Request& request) {
   allow_only(request.query, {});
@@ -40,14 +56,17 @@ Response list_examples(Service&, const Request& request) {
 
 Response get_example(Service&, const Request& request) {
   allow_only(request.query, {});
-  const std::string& wanted = request.path_parameters.at("name");
-  for (const api::Example& example : api::examples()) {
-    if (example.name == wanted)
-      return document_response(request, 200,
-                               [&example](api::DocumentWriter& out) { out.json(example.json); });
-  }
-  throw HttpError(404, {"unknown-example", "Unknown example",
-                        "There is no example of this name; GET /v1/examples lists them."});
+  const api::Example& example = find_example(request);
+  return document_response(request, 200, [&example](api::DocumentWriter& out) { out.json(example.json); });
+}
+
+Response get_example_picture(Service&, const Request& request) {
+  allow_only(request.query, {});
+  const std::string file = std::string(find_example(request).name) + ".svg";
+  Response response = Response::empty(200);
+  response.content_type = svg_media_type;
+  response.body = std::ranges::find(example_pictures(), file, &ExamplePicture::name)->svg;
+  return response;
 }
 
 }  // namespace signorini::server

@@ -1,6 +1,5 @@
 #include "server/handlers/routes.hpp"
 
-#include "server/handlers/docs.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/downloads.hpp"
 #include "server/handlers/events.hpp"
@@ -8,6 +7,7 @@
 #include "server/handlers/intake.hpp"
 #include "server/handlers/lists.hpp"
 #include "server/handlers/metrics.hpp"
+#include "server/handlers/openapi.hpp"
 #include "server/handlers/pages.hpp"
 #include "server/handlers/problems.hpp"
 #include "server/handlers/solves.hpp"
@@ -24,12 +24,20 @@ Router routes(Service& service) {
                               Response (*handle)(Service&, const Request&)) -> Route {
     return {"GET", pattern, std::move(media_types), with(handle), Audience::clients, has_result};
   };
+  const auto page_of = [](std::string_view file) -> Handler {
+    return [file](const Request&) { return page_response(file); };
+  };
+  const auto with_page = [](Route route, Handler page) {
+    route.page = std::move(page);
+    return route;
+  };
   std::vector<Route> table{
       {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result,
        require_readable},
-      {"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
+      with_page({"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
+                page_of("solves.html")),
       {"DELETE", "/v1/solves", document_types, with(delete_tagged)},
-      {"GET", "/v1/solves/{id}", document_types, with(get_solve)},
+      with_page({"GET", "/v1/solves/{id}", document_types, with(get_solve)}, page_of("solve.html")),
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
       long_reply("/v1/solves/{id}/result", document_types, get_result),
       long_reply("/v1/solves/{id}/result.vtu", {vtu_media_type}, get_result_vtu),
@@ -44,16 +52,22 @@ Router routes(Service& service) {
       {"POST", "/v1/validate", document_types, with(validate_problem), Audience::clients, nullptr,
        require_readable},
       {"GET", "/v1/examples", document_types, with(list_examples)},
-      {"GET", "/v1/examples/{name}", document_types, with(get_example)},
+      with_page({"GET", "/v1/examples/{name}", document_types, with(get_example)}, page_of("problem.html")),
+      // An <img> of a page shows no token.
+      {"GET",
+       "/v1/examples/{name}/picture.svg",
+       {svg_media_type},
+       with(get_example_picture),
+       Audience::everybody},
       // Probes send whatever Accept they like.
       {"GET", "/healthz", {}, with(healthz), Audience::probes},
       {"GET", "/readyz", {}, with(readyz), Audience::probes},
       {"GET", "/metrics", {}, with(get_metrics), Audience::monitors},
       {"GET", "/openapi.json", {"application/json"}, with(get_openapi), Audience::everybody},
-      {"GET", "/docs", {"text/html"}, with(get_docs), Audience::everybody},
+      {"GET", "/", {"text/html"}, page_of("start.html"), Audience::everybody},
+      {"GET", "/docs", {"text/html"}, page_of("docs.html"), Audience::everybody},
       // Browsers ask for a style or script by what it is for, and may name neither type.
-      {"GET", "/docs/{file}", {}, with(get_docs_file), Audience::everybody},
-      {"GET", "/", {"text/html"}, with(get_start_page), Audience::everybody},
+      {"GET", "/pages/{file}", {}, with(get_page_file), Audience::everybody},
   };
   return {std::move(table), service.access,
           [&metrics = service.metrics](const Request& request, const Response& response,

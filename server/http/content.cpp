@@ -4,7 +4,6 @@
 #include <cctype>
 #include <optional>
 
-#include "api/gzip.hpp"
 #include "server/http/error.hpp"
 
 namespace signorini::server {
@@ -16,8 +15,9 @@ constexpr std::size_t longest_short_body = std::size_t{256} * 1024;
 /// A shorter body fits into one packet as it is.
 constexpr std::size_t shortest_compressed_body = 1024;
 
-bool write_compressed(const BodyWriter& write, const PieceSink& sink) {
-  api::Gzip gzip(sink);
+bool write_compressed(const BodyWriter& write, const PieceSink& sink,
+                      api::Effort effort = api::Effort::least) {
+  api::Gzip gzip(sink, effort);
   return write([&](std::string_view piece) { return gzip.put(piece); }) && gzip.finish();
 }
 
@@ -52,13 +52,13 @@ HttpError broken_body() {
 
 }  // namespace
 
-std::string compressed(const std::string& text) {
+std::string compressed(std::string_view text, api::Effort effort) {
   std::string bytes;
   const auto append = [&](std::string_view piece) {
     bytes += piece;
     return true;
   };
-  write_compressed([&](const PieceSink& sink) { return sink(text); }, append);
+  write_compressed([&](const PieceSink& sink) { return sink(text); }, append, effort);
   return bytes;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "api/gzip.hpp"
 #include "server/http/response.hpp"
 
 namespace signorini::server {
@@ -12,7 +14,7 @@ namespace signorini::server {
 void take_if_short(Response& response);
 
 /// The text by gzip.
-std::string compressed(const std::string& text);
+std::string compressed(std::string_view text, api::Effort effort = api::Effort::least);
 
 /// Compresses the body by gzip, if there is one and it is long enough to gain by it.
 void compress(Response& response);

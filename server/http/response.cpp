@@ -9,13 +9,6 @@ Response Response::json(int status, std::string text) {
   return response;
 }
 
-Response Response::html(std::string text) {
-  Response response = empty(200);
-  response.content_type = "text/html; charset=utf-8";
-  response.body = std::move(text);
-  return response;
-}
-
 Response Response::empty(int status) {
   Response response;
   response.status = status;

@@ -35,7 +35,6 @@ struct Response {
   std::string job;  ///< id of the job that the reply is about, for the log
 
   static Response json(int status, std::string text);
-  static Response html(std::string text);
   static Response empty(int status);
 };
 

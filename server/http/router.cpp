@@ -55,6 +55,16 @@ std::string negotiate(const Request& request, const Route& route) {
   throw not_acceptable(route);
 }
 
+const std::string html = "text/html";
+
+/// Whether a browser asks, which is to see the page of the route.
+bool wants_page(const Request& request, const Route& route) {
+  if (!route.page || request.method == "OPTIONS") return false;
+  std::vector<std::string> types = route.media_types;
+  types.push_back(html);
+  return preferred(request.header("Accept"), types) == html;
+}
+
 /// The methods of routes, and the one that asks for them.
 std::pair<std::string, std::string> allow(const std::string& methods) {
   return {"Allow", methods + ", OPTIONS"};
@@ -101,6 +111,7 @@ Router::Found Router::find(Request& request) const {
         (found.methods.empty() ? "" : ", ") + (route.method == "GET" ? "GET, HEAD" : route.method);
     if (found.route != nullptr || (route.method != method && method != "OPTIONS")) continue;
     found.route = &route;
+    found.by_page = wants_page(request, route);
     request.path_parameters = std::move(*parameters);
   }
   return found;
@@ -118,7 +129,7 @@ const Route& Router::require(Request& request, const Found& found) const {
   if (found.wants_token()) request.identity = access_.require(request, found.scope(request.method));
   if (found.methods.empty()) throw not_found();
   if (found.route == nullptr) throw method_not_allowed(request.method, found.methods);
-  if (request.method == "OPTIONS") return *found.route;
+  if (request.method == "OPTIONS" || found.by_page) return *found.route;
   request.reply_type = negotiate(request, *found.route);
   if (found.route->judge_body != nullptr) found.route->judge_body(request);
   return *found.route;
@@ -143,7 +154,7 @@ Response Router::route(Request& request) const {
   if (found.wants_token()) access_.count(request.identity);
   if (request.method == "OPTIONS") return options(found.methods);
   const SenderFields sender(request);
-  return route.handler(request);
+  return found.by_page ? route.page(request) : route.handler(request);
 }
 
 }  // namespace signorini::server

@@ -31,6 +31,9 @@ struct Route {
   /// Throws HttpError for a body that the handler would not take, by what the head says of it. Empty: nothing
   /// is asked.
   void (*judge_body)(const Request& request) = nullptr;
+  /// Answers browsers, which prefer `text/html` to all media types of the reply, by a page. It holds nothing
+  /// of any client, so that it is for everybody. Empty: there is none.
+  Handler page = nullptr;
 };
 
 /// Told of every reply once it is made, those included that no route has given.
@@ -70,7 +73,11 @@ class Router {
   struct Found {
     const Route* route = nullptr;  ///< for the method of the request; for OPTIONS the first of them
     std::string methods;           ///< of all of them
-    Audience audience() const { return route == nullptr ? Audience::clients : route->audience; }
+    bool by_page = false;          ///< whether the page of the route answers
+    Audience audience() const {
+      if (by_page) return Audience::everybody;
+      return route == nullptr ? Audience::clients : route->audience;
+    }
     bool wants_token() const { return audience() == Audience::clients || audience() == Audience::monitors; }
     /// What the token is to be for.
     Scope scope(const std::string& method) const;

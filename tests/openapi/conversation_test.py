@@ -281,9 +281,11 @@ class Conversation(unittest.TestCase):
         self.call("PUT", "/v1/solves", 405, self.problem())
 
     def test_pages_and_probes(self):
-        for path in ["/", "/docs", "/docs/page.css", "/docs/page.js", "/openapi.json", "/healthz", "/readyz", "/metrics"]:
+        for path in ["/", "/docs", "/pages/page.css", "/pages/shell.js", "/v1/examples/gap-sweep/picture.svg", "/openapi.json", "/healthz", "/readyz", "/metrics"]:
             self.call("GET", path, 200)
-        self.call("GET", "/docs/none", 404)
+        self.call("GET", "/pages/none", 404)
+        for path in ["/v1/solves", "/v1/solves/none", "/v1/examples/gap-sweep"]:
+            self.call("GET", path, 200, Accept="text/html,*/*;q=0.8")
 
 
 if __name__ == "__main__":

@@ -70,6 +70,14 @@ TEST_F(Tokens, AreNotNeededByProbesAndReaders) {
   }
 }
 
+TEST_F(Tokens, AreNotNeededForPages) {
+  for (const char* path : {"/v1/solves", "/v1/solves/none", "/v1/examples/gap-sweep"}) {
+    EXPECT_EQ(client_.Get(path, {{"Accept", "text/html"}})->status, 200) << path;
+    expect_problem(client_.Get(path, {{"Accept", "application/json"}}), 401);
+  }
+  EXPECT_EQ(get("/v1/examples/gap-sweep/picture.svg")->status, 200);
+}
+
 TEST_F(Tokens, AreAskedOfThoseWhoAskForOptions) {
   expect_problem(client_.Options("/v1/solves"), 401);
   EXPECT_EQ(client_.Options("/v1/solves", {{"Authorization", "Bearer " + first_token}})->status, 204);

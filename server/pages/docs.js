@@ -1,13 +1,10 @@
 // Shows /openapi.json: every call, to read and to try, and every schema.
 
-const longestShown = 20000;
+import { aria, element } from "/pages/element.js";
+import { getJson, withToken } from "/pages/service.js";
+import { shell } from "/pages/shell.js";
 
-/// An element with properties and children; children that are texts stay texts.
-function element(tag, properties = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children.flat().filter((child) => child !== null && child !== undefined && child !== ""));
-  return made;
-}
+const longestShown = 20000;
 
 /// Markdown as far as descriptions use it: paragraphs, **strong**, `code`.
 function inline(text) {
@@ -120,7 +117,7 @@ async function send(method, path, parameters, form, output) {
   const target = query.size ? `${path}?${query}` : path;
   output.textContent = `${method} ${target} …`;
   try {
-    const reply = await fetch(target, { method, headers, body });
+    const reply = await fetch(target, { method, headers: withToken(headers), body });
     const head = [...reply.headers].map(([name, value]) => `${name}: ${value}`).join("\n");
     output.textContent = `${reply.status} ${reply.statusText}\n${head}\n\n${await shownBody(reply)}`;
   } catch (error) {
@@ -181,27 +178,28 @@ function callsOf(api, tag) {
       })));
 }
 
-function show(api) {
-  const contents = document.getElementById("contents");
-  const main = document.getElementById("document");
-  main.replaceChildren(element("h1", {}, api.info.title),
-    ...paragraphs(api.info.summary), ...paragraphs(api.info.description),
-    element("p", {}, element("a", { href: "/openapi.json" }, `OpenAPI ${api.openapi}`), " · ", element("a", { href: "/" }, "Start")));
-  for (const tag of api.tags) {
-    const calls = callsOf(api, tag.name);
-    contents.append(element("h2", {}, tag.name), ...calls.map((call) => call.line));
-    main.append(element("h2", {}, tag.name), ...paragraphs(tag.description), ...calls.map((call) => call.section));
+function show(main, api) {
+  const contents = aria(element("nav", { className: "contents" }), { "aria-label": "Contents" });
+  const text = element("div", { className: "document" }, element("h1", {}, api.info.title),
+    paragraphs(api.info.summary), paragraphs(api.info.description),
+    element("p", {}, element("a", { href: "/openapi.json" }, `OpenAPI ${api.openapi}`)));
+  const chapter = (name, about, lines, sections) => {
+    contents.append(element("h2", {}, name), ...lines);
+    text.append(element("h2", {}, name), ...paragraphs(about), ...sections);
+  };
+  for (const { name, description } of api.tags) {
+    const calls = callsOf(api, name);
+    chapter(name, description, calls.map(({ line }) => line), calls.map(({ section }) => section));
   }
   const schemas = Object.entries(api.components.schemas);
-  contents.append(element("h2", {}, "schemas"), ...schemas.map(([name]) => linkTo(name)));
-  main.append(element("h2", {}, "schemas"), ...schemas.map(([name, schema]) => schemaSection(api, name, schema)));
+  chapter("schemas", "", schemas.map(([name]) => linkTo(name)), schemas.map(([name, schema]) => schemaSection(api, name, schema)));
+  main.append(contents, text);
   document.getElementById(location.hash.slice(1))?.scrollIntoView();
 }
 
+const main = shell();
 try {
-  const reply = await fetch("/openapi.json");
-  if (!reply.ok) throw new Error(`/openapi.json: ${reply.status}`);
-  show(await reply.json());
+  show(main, await getJson("/openapi.json"));
 } catch (error) {
-  document.getElementById("document").replaceChildren(element("p", {}, `The document cannot be shown: ${error.message}`));
+  main.append(element("p", { className: "fault", role: "alert" }, `The document cannot be shown: ${error.message}`));
 }

@@ -1,0 +1,64 @@
+// The controls of the picture, which set the view.
+
+import { aria, element, save, short } from "/pages/element.js";
+import { mostTriangles, svgOf } from "/pages/vector.js";
+
+/// `figures`: one, or two that are linked.
+export function controlsOf(figures, view, names) {
+  const [figure] = figures;
+  const field = element("select", {}, [...figure.fields.values()].map(({ key, name }) => element("option", { value: key }, name)));
+  field.addEventListener("change", () => view.set({ field: field.value, fixed: false, low: null, high: null }));
+
+  const toggle = (name, text, possible = true) => {
+    const button = element("button", { type: "button", hidden: !possible }, text);
+    button.addEventListener("click", () => view.set({ [name]: !state(name) }));
+    return { name, button };
+  };
+  const state = (name) => (name === "surface" ? figure.surface : view[name]);
+  const toggles = [toggle("surface", "Surface", !figure.body), toggle("mesh", "Mesh"), toggle("nodes", "Unknowns"), toggle("crosses", "Principal directions", figure.body),
+    toggle("smooth", "Smoothed"), toggle("difference", "Difference", figures.length > 1 && agree(figures))];
+
+  const slider = element("input", { type: "range", min: 0, max: 1, step: "any" }), exact = element("input", { type: "number", min: 0, step: "any", className: "short" });
+  aria(slider, { "aria-label": figure.body ? "Deformation, slider" : "Height, slider" });
+  slider.addEventListener("input", () => view.set({ lift: Number((4 * figure.usualLift * slider.valueAsNumber ** 2).toPrecision(3)) }));
+  exact.addEventListener("change", () => view.set({ lift: exact.value === "" ? null : Math.max(0, exact.valueAsNumber) }));
+  const lift = element("label", {}, figure.body ? "Deformed ×" : "Height ×", exact, slider);
+
+  const fixed = element("input", { type: "checkbox" }), low = element("input", { type: "number", step: "any", className: "short", ariaLabel: "Lowest value of the scale" }), high = element("input", { type: "number", step: "any", className: "short", ariaLabel: "Highest value of the scale" });
+  fixed.addEventListener("change", () => view.set(fixed.checked ? { fixed: true, low: figure.scale.low, high: figure.scale.high } : { fixed: false, low: null, high: null }));
+  for (const [name, input] of [["low", low], ["high", high]]) input.addEventListener("change", () => { if (input.value !== "") view.set({ fixed: true, low: view.low ?? figure.scale.low, high: view.high ?? figure.scale.high, [name]: input.valueAsNumber }); });
+
+  const button = (text, does) => { const made = element("button", { type: "button" }, text); made.addEventListener("click", does); return made; };
+  const each = (use) => figures.forEach((own, i) => use(own, `${names[i]}-${own.field.key}`));
+  const svg = button("SVG", () => each((own, name) => save(`${name}.svg`, new Blob([svgOf(own)], { type: "image/svg+xml" }))));
+  svg.disabled = figures.some((own) => own.count > mostTriangles);
+  if (svg.disabled) svg.title = `Only of up to ${short(mostTriangles)} triangles`;
+  const link = button("Copy link", async () => {
+    view.writeAddress();
+    await navigator.clipboard?.writeText(location.href).catch(() => {});
+    link.textContent = "Copied";
+    setTimeout(() => { link.textContent = "Copy link"; }, 1500);
+  });
+
+  const show = () => {
+    field.value = figure.field.key;
+    for (const { name, button: own } of toggles) own.setAttribute("aria-pressed", String(Boolean(state(name))));
+    if (document.activeElement !== exact) exact.value = figure.lift;
+    if (document.activeElement !== slider) slider.value = Math.min(1, Math.sqrt(figure.lift / (4 * figure.usualLift)));
+    lift.hidden = !figure.body && !figure.surface;
+    fixed.checked = view.fixed;
+    if (figure.scale) for (const [name, input] of [["low", low], ["high", high]]) if (document.activeElement !== input) input.value = Number((view.fixed ? view[name] : figure.scale[name]).toPrecision(6));
+  };
+  figure.onDrawn = show;
+  show();
+  return aria(element("div", { className: "controls" },
+    element("div", { className: "row" }, element("label", {}, "Field", field), toggles.map(({ button: own }) => own)),
+    element("div", { className: "row" }, lift, element("label", {}, "Scale", low, "to", high), element("label", {}, fixed, "Fixed"),
+      element("span", { className: "row last" }, button("Whole view", () => view.reset()), button("PNG", () => each(async (own, name) => save(`${name}.png`, await own.png()))), svg, link))), { role: "group", "aria-label": "What the picture shows" });
+}
+
+/// Whether the meshes of both are the same.
+export function agree([a, b]) {
+  const same = (one, other) => one.length === other.length && one.every((value, i) => value === other[i]);
+  return a.body === b.body && a.field.corners === b.field.corners && same(a.result.mesh.triangles, b.result.mesh.triangles) && same(a.result.mesh.points, b.result.mesh.points);
+}

@@ -1,0 +1,394 @@
+// The picture of one result: its triangles by WebGL, over them the boundary, nodes and crosses, beside it the scale.
+
+import { colour, scaleOf } from "/pages/colours.js";
+import { Drawing } from "/pages/drawing.js";
+import { aria, element, short } from "/pages/element.js";
+import { extent, fieldsOf, isBody, valueAt } from "/pages/fields.js";
+import { nodesOf } from "/pages/nodes.js";
+import { Projection } from "/pages/view.js";
+
+const mostMarks = 20000; // nodes or crosses that are drawn; more could not be told apart
+
+export class Figure {
+  constructor(result, view, name) {
+    Object.assign(this, { result, view, name, fields: fieldsOf(result), body: isBody(result), drawn: {}, scheduled: false });
+    this.canvas = element("canvas");
+    this.over = element("canvas");
+    this.frame = aria(element("div", { className: "frame", tabIndex: 0 }, this.canvas, this.over), { role: "application", "aria-roledescription": "picture", "aria-label": name });
+    this.scaleBar = element("canvas", { width: 1, height: 256, className: "bar" });
+    this.ticks = element("ol", { className: "ticks" });
+    this.readout = aria(element("output", { className: "readout" }), { "aria-live": "off" });
+    this.title = element("p", { className: "field" });
+    this.whole = element("figure", { className: "figure" }, element("figcaption", {}, this.title), element("div", { className: "drawn" }, this.frame, element("div", { className: "scale" }, this.scaleBar, this.ticks)), this.readout);
+    this.measure();
+    try {
+      this.drawing = new Drawing(this.canvas, this.count, () => { this.drawn = {}; this.schedule(); });
+    } catch (error) {
+      this.frame.replaceChildren(element("p", { className: "notice bad" }, error.message));
+    }
+    this.listen();
+    view.onChange(() => this.schedule());
+    addEventListener("themechange", () => this.schedule());
+    new ResizeObserver(() => this.schedule()).observe(this.frame);
+  }
+
+  get surface() {
+    return !this.body && (this.view.surface ?? true);
+  }
+  get field() {
+    return this.fields.get(this.view.field) ?? this.fields.values().next().value;
+  }
+
+  /// Places become relative to the middle of the body and its size, which single precision then holds in any unit.
+  measure() {
+    const { mesh: { points, triangles }, displacement } = this.result;
+    this.count = triangles.length / 3;
+    const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+    for (let i = 0; i < points.length; ++i) {
+      low[i % 2] = Math.min(low[i % 2], points[i]);
+      high[i % 2] = Math.max(high[i % 2], points[i]);
+    }
+    this.middle = low.map((each, c) => each / 2 + high[c] / 2);
+    const halves = low.map((each, c) => high[c] / 2 - each / 2);
+    this.unit = Math.max(...halves);
+    this.size = halves.map((half) => half / this.unit);
+    // Of a membrane what is seen may lie between its values at the corners of the triangles.
+    const [least, most] = extent(this.body ? displacement.at_points : displacement.values);
+    this.base = this.body ? 0 : least / 2 + most / 2;
+    this.largest = (this.body ? Math.max(-least, most) : most / 2 - least / 2) || 1;
+  }
+
+  /// By what a body is deformed in the picture: a number of two digits at which its largest displacement is seen.
+  get usualLift() {
+    const share = (0.06 * this.unit) / this.largest, power = 10 ** (Math.floor(Math.log10(share)) - 1);
+    return this.body ? Math.max(Math.round(share / power), 1) * power : 1;
+  }
+  get lift() {
+    return this.view.lift ?? this.usualLift;
+  }
+  /// The same in units of the picture.
+  get liftDrawn() {
+    return this.body ? (this.lift * this.largest) / this.unit : 0.35 * this.lift;
+  }
+
+  schedule() {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => { this.scheduled = false; this.draw(); });
+  }
+
+  // --- what is drawn
+
+  /// What the triangles show, and where they are, if that has changed.
+  prepare() {
+    const { view, drawn, field, result: { mesh: { points, triangles } } } = this;
+    const key = [field.key, view.smooth, this.other?.name].join();
+    if (drawn.values !== key) {
+      this.at = this.values(view.smooth);
+      const all = new Float64Array(triangles.length).map((_, i) => this.at(i));
+      [this.least, this.most] = extent(all);
+      const middle = this.least / 2 + this.most / 2, half = this.most / 2 - this.least / 2 || 1;
+      this.normal = (value) => (value - middle) / half;
+      this.drawing?.setValues(Float32Array.from(all, this.normal));
+      drawn.values = key;
+    }
+    const shape = `${this.surface && view.smooth}`;
+    if (drawn.shape !== shape) {
+      const places = new Float32Array(2 * triangles.length).map((_, i) => (points[2 * triangles[i >> 1] + (i & 1)] - this.middle[i & 1]) / this.unit);
+      this.drawing?.setShape(places, this.shifts());
+      drawn.shape = shape;
+    }
+  }
+
+  /// The values at corners; of the difference to the other result if there is one.
+  values(smooth) {
+    const { triangles } = this.result.mesh, own = valueAt(this.field, smooth, triangles);
+    if (!this.other) return own;
+    const others = valueAt(this.other.fields.get(this.field.key), smooth, triangles);
+    return (i) => own(i) - others(i);
+  }
+
+  /// By which corners move: of a body at the points, of a membrane by its displacement as it is, with its jumps.
+  shifts() {
+    const { mesh: { triangles }, displacement: { at_points: points } } = this.result;
+    if (this.body) return new Float32Array(2 * triangles.length).map((_, i) => points[2 * triangles[i >> 1] + (i & 1)] / this.largest);
+    this.heights = valueAt(this.fields.get("displacement"), this.view.smooth, triangles);
+    return new Float32Array(triangles.length).map((_, i) => (this.heights(i) - this.base) / this.largest);
+  }
+
+  draw() {
+    const { frame, view } = this, width = frame.clientWidth, height = frame.clientHeight;
+    if (!width || !height) return;
+    this.prepare();
+    const dense = devicePixelRatio || 1;
+    for (const canvas of [this.canvas, this.over]) {
+      const size = [Math.round(width * dense), Math.round(height * dense)];
+      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+    }
+    this.dense = dense;
+    const lifted = this.body ? 0 : this.liftDrawn;
+    this.projection = new Projection(view, this.surface, width, height, this.body ? this.size.map((half) => half + 0.5 * this.liftDrawn) : this.size, lifted);
+    this.scale = this.sharedScale?.() ?? this.ownScale();
+    this.showScale();
+    this.looked = {
+      turn: this.projection.turn, frame: this.projection.frame, lift: this.surface || this.body ? this.liftDrawn : 0,
+      range: [this.scale.low, this.scale.high].map(this.normal), even: this.field.corners === 1 && !view.smooth, mesh: view.mesh, lit: this.surface,
+    };
+    this.drawing?.draw(this.looked);
+    this.drawOver();
+    if (this.pointer) this.look(...this.pointer);
+    this.onDrawn?.();
+  }
+
+  /// The scale of what is shown, or the range that was fixed.
+  ownScale() {
+    const { fixed, low, high } = this.view;
+    return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(this.least, this.most);
+  }
+
+  showScale() {
+    const { low, high, diverges } = this.scale;
+    const key = [low, high, diverges, this.field.name, this.other?.name].join();
+    if (this.drawn.scale === key) return;
+    this.drawn.scale = key;
+    const colours = Uint8Array.from({ length: 1024 }, (_, i) => (i % 4 === 3 ? 255 : colour((i >> 2) / 255, diverges)[i % 4]));
+    this.drawing?.setColours(colours);
+    const pixels = new ImageData(1, 256);
+    for (let i = 0; i < 256; ++i) pixels.data.set([...colour(1 - i / 255, diverges), 255], 4 * i);
+    this.scaleBar.getContext("2d").putImageData(pixels, 0, 0);
+    this.ticks.replaceChildren(...[4, 3, 2, 1, 0].map((i) => element("li", {}, short(low + (high - low) * (i / 4)))));
+    this.title.textContent = this.other ? `${this.field.name}, less that of the other` : this.field.name;
+  }
+
+  /// The place of a corner in the picture.
+  corner(i) {
+    const { mesh: { points, triangles }, displacement: { at_points: moved } } = this.result, p = triangles[i];
+    if (this.surface) return this.pixelOf(points[2 * p], points[2 * p + 1], (this.heights(i) - this.base) / this.largest);
+    const lift = this.body ? this.lift : 0;
+    return this.pixelOf(points[2 * p] + lift * (this.body ? moved[2 * p] : 0), points[2 * p + 1] + lift * (this.body ? moved[2 * p + 1] : 0));
+  }
+  /// How far behind the screen it is.
+  depthOf(i) {
+    const { points, triangles } = this.result.mesh, p = triangles[i];
+    return this.projection.depth(...[0, 1].map((c) => (points[2 * p + c] - this.middle[c]) / this.unit), ((this.heights(i) - this.base) / this.largest) * this.liftDrawn);
+  }
+  pixelOf(x, y, height = 0) {
+    return this.projection.pixel((x - this.middle[0]) / this.unit, (y - this.middle[1]) / this.unit, height * this.liftDrawn);
+  }
+  /// The place of a point of the mesh.
+  pixelOfPoint(p) {
+    const { mesh: { points }, displacement: { at_points: moved } } = this.result;
+    if (this.body) return this.pixelOf(points[2 * p] + this.lift * moved[2 * p], points[2 * p + 1] + this.lift * moved[2 * p + 1]);
+    return this.pixelOf(points[2 * p], points[2 * p + 1], this.surface ? (moved[p] - this.base) / this.largest : 0);
+  }
+
+  drawOver() {
+    const pen = this.over.getContext("2d"), style = getComputedStyle(this.frame), { view, result: { mesh, contact = {} } } = this;
+    pen.setTransform(this.dense, 0, 0, this.dense, 0, 0);
+    pen.clearRect(0, 0, this.frame.clientWidth, this.frame.clientHeight);
+    pen.lineCap = "round";
+    for (const [name, edges] of Object.entries(mesh.boundary)) {
+      pen.beginPath();
+      for (let i = 0; i < edges.length; i += 2) {
+        pen.moveTo(...this.pixelOfPoint(edges[i]));
+        pen.lineTo(...this.pixelOfPoint(edges[i + 1]));
+      }
+      pen.strokeStyle = style.getPropertyValue(name in contact ? "--accent" : "--quiet");
+      pen.lineWidth = name in contact ? 2.5 : 1.2;
+      if (!this.surface || name in contact) pen.stroke();
+    }
+    if (view.nodes) this.drawNodes(pen, style);
+    if (view.crosses && this.body) this.drawCrosses(pen, style);
+    if (this.picked !== undefined && this.picked >= 0) {
+      pen.beginPath();
+      for (let k = 0; k < 3; ++k) pen[k ? "lineTo" : "moveTo"](...this.corner(3 * this.picked + k));
+      pen.closePath();
+      pen.strokeStyle = "#fff";
+      pen.lineWidth = 3.5;
+      pen.stroke();
+      pen.strokeStyle = "#000";
+      pen.lineWidth = 1.5;
+      pen.stroke();
+    }
+  }
+
+  isSeen([x, y]) {
+    return x >= 0 && y >= 0 && x <= this.frame.clientWidth && y <= this.frame.clientHeight;
+  }
+
+  /// Where the unknowns sit: of the stress a bar across its edge, or inside a square, of the displacement a disc, of the
+  /// clearance a ring.
+  drawNodes(pen, style) {
+    this.nodes ??= nodesOf(this.result);
+    const ink = style.getPropertyValue("--ink"), ground = style.getPropertyValue("--paper");
+    const marks = (places, draw) => {
+      const seen = [];
+      for (const [t, weights] of places) {
+        const corners = [0, 1, 2].map((k) => this.corner(3 * t + k));
+        const at = [0, 1].map((c) => corners.reduce((sum, corner, k) => sum + weights[k] * corner[c], 0));
+        if (this.isSeen(at)) seen.push([at, corners, weights]);
+        if (seen.length > mostMarks) return;
+      }
+      seen.forEach((own) => draw(...own));
+    };
+    pen.lineWidth = 1.6;
+    marks(this.nodes.stress, ([x, y], corners, weights) => {
+      const opposite = weights.indexOf(0);
+      pen.beginPath();
+      if (opposite < 0) pen.rect(x - 2.5, y - 2.5, 5, 5);
+      else {
+        const [a, b] = [corners[(opposite + 1) % 3], corners[(opposite + 2) % 3]], long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+        const [nx, ny] = [((b[1] - a[1]) / long) * 5, ((a[0] - b[0]) / long) * 5];
+        pen.moveTo(x - nx, y - ny);
+        pen.lineTo(x + nx, y + ny);
+      }
+      pen.strokeStyle = ground;
+      pen.lineWidth = 4;
+      pen.stroke();
+      pen.strokeStyle = ink;
+      pen.lineWidth = 1.6;
+      pen.stroke();
+    });
+    marks(this.nodes.displacement, ([x, y]) => {
+      pen.beginPath();
+      pen.arc(x, y, 2.6, 0, 7);
+      pen.fillStyle = ink;
+      pen.strokeStyle = ground;
+      pen.lineWidth = 1.6;
+      pen.stroke();
+      pen.fill();
+    });
+    for (const [x, y] of this.nodes.clearance.map((own) => this.clearanceNode(own)).filter((at) => this.isSeen(at))) {
+      pen.beginPath();
+      pen.arc(x, y, 4.5, 0, 7);
+      pen.fillStyle = ground;
+      pen.fill();
+      pen.strokeStyle = style.getPropertyValue("--accent");
+      pen.lineWidth = 2.2;
+      pen.stroke();
+    }
+  }
+  /// It lies between the ends of an edge.
+  clearanceNode([a, b, way]) {
+    const [from, to] = [this.pixelOfPoint(a), this.pixelOfPoint(b)];
+    return from.map((each, c) => each + way * (to[c] - each));
+  }
+
+  /// The principal directions at the centroids; arms by the size of the stress, pressure in the colour of pressure.
+  drawCrosses(pen, style) {
+    const { stress: { at_centroids: stress }, principal } = this.result;
+    const [low, high] = extent(principal), largest = Math.max(-low, high) || 1;
+    const apart = 14, arm = 7, taken = new Set();
+    const colours = [style.getPropertyValue("--pull"), style.getPropertyValue("--push")];
+    pen.lineWidth = 1.3;
+    for (let t = 0; t < this.count; ++t) {
+      const corners = [0, 1, 2].map((k) => this.corner(3 * t + k));
+      const at = [0, 1].map((c) => (corners[0][c] + corners[1][c] + corners[2][c]) / 3);
+      const cell = `${Math.floor(at[0] / apart)},${Math.floor(at[1] / apart)}`;
+      if (!this.isSeen(at) || taken.has(cell)) continue;
+      taken.add(cell);
+      const [xx, yy, xy] = stress.subarray(3 * t, 3 * t + 3), angle = 0.5 * Math.atan2(2 * xy, xx - yy);
+      for (let c = 0; c < 2; ++c) {
+        const size = (arm * Math.abs(principal[2 * t + c])) / largest ** 1, way = angle + (c * Math.PI) / 2;
+        const [dx, dy] = [Math.cos(way) * Math.max(size, 0.6), -Math.sin(way) * Math.max(size, 0.6)];
+        pen.beginPath();
+        pen.moveTo(at[0] - dx, at[1] - dy);
+        pen.lineTo(at[0] + dx, at[1] + dy);
+        pen.strokeStyle = "#ffffffb0";
+        pen.lineWidth = 3;
+        pen.stroke();
+        pen.strokeStyle = colours[principal[2 * t + c] < 0 ? 1 : 0];
+        pen.lineWidth = 1.5;
+        pen.stroke();
+      }
+    }
+  }
+
+  // --- what is under the pointer
+
+  look(x, y) {
+    this.pointer = [x, y];
+    if (!this.drawing || !this.looked) return;
+    const t = this.drawing.triangleAt(this.looked, x * this.dense, y * this.dense), before = this.picked;
+    this.picked = t;
+    if (t < 0) this.readout.textContent = "";
+    else this.tellValue(t, [x, y]);
+    if (before !== t) this.drawOver();
+  }
+
+  /// A picture is parallel: shares of the corners are the same on the screen and in the body.
+  tellValue(t, [x, y]) {
+    const [a, b, c] = [0, 1, 2].map((k) => this.corner(3 * t + k));
+    const twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    const second = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) / twice, third = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) / twice;
+    const shares = [1 - second - third, second, third];
+    const { points, triangles } = this.result.mesh, mixed = (at) => shares.reduce((sum, share, k) => sum + share * at(3 * t + k), 0);
+    const place = [0, 1].map((own) => mixed((i) => points[2 * triangles[i] + own]));
+    const value = this.looked.even ? this.at(3 * t) : mixed(this.at);
+    this.readout.replaceChildren(element("span", {}, `x ${short(place[0])}`), element("span", {}, `y ${short(place[1])}`),
+      element("span", {}, `triangle ${t}`), element("strong", {}, `${this.title.textContent} ${short(value, 6)}`));
+    Object.assign(this.readout.dataset, { triangle: t, value, x: place[0], y: place[1] });
+  }
+
+  // --- what moves it
+
+  listen() {
+    const { frame, view } = this, fingers = new Map();
+    const place = (event) => { const box = frame.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+    const pan = (dx, dy) => view.set({ x: view.x + dx / frame.clientWidth, y: view.y + dy / frame.clientHeight });
+    const turn = (dx, dy) => view.set({ turn: view.turn + dx * 0.008, tilt: Math.min(Math.PI / 2, Math.max(0.02, view.tilt + dy * 0.008)) });
+    /// What is at (x, y) stays there.
+    const zoom = (factor, [x, y]) => {
+      const own = Math.min(1e4, Math.max(0.2, view.zoom * factor)) / view.zoom, [w, h] = [frame.clientWidth, frame.clientHeight];
+      const kept = (offset, at, whole) => (at - own * (at - (whole / 2 + offset * whole)) - whole / 2) / whole;
+      view.set({ zoom: view.zoom * own, x: kept(view.x, x, w), y: kept(view.y, y, h) });
+    };
+    frame.addEventListener("pointerdown", (event) => { frame.setPointerCapture(event.pointerId); fingers.set(event.pointerId, place(event)); });
+    frame.addEventListener("pointermove", (event) => {
+      const at = place(event), before = fingers.get(event.pointerId);
+      if (!before) return this.look(...at);
+      const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
+      fingers.set(event.pointerId, at);
+      if (other) {
+        const long = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1, middle = [0, 1].map((c) => (at[c] + other[c]) / 2);
+        pan((at[0] - before[0]) / 2, (at[1] - before[1]) / 2);
+        zoom(long(at) / long(before), middle);
+      } else if (this.surface && !event.shiftKey && event.button !== 1) turn(at[0] - before[0], at[1] - before[1]);
+      else pan(at[0] - before[0], at[1] - before[1]);
+    });
+    for (const end of ["pointerup", "pointercancel"]) frame.addEventListener(end, (event) => { fingers.delete(event.pointerId); if (event.type === "pointerup") this.look(...place(event)); });
+    frame.addEventListener("pointerleave", () => { this.pointer = null; this.picked = -1; this.drawOver(); });
+    frame.addEventListener("wheel", (event) => { event.preventDefault(); zoom(Math.exp(-event.deltaY * 0.0015), place(event)); }, { passive: false });
+    frame.addEventListener("dblclick", () => view.reset());
+    frame.addEventListener("keydown", (event) => {
+      const middle = [frame.clientWidth / 2, frame.clientHeight / 2], turns = this.surface && !event.shiftKey, step = turns ? 12 : 30;
+      const move = (dx, dy) => (turns ? turn(dx * step, dy * step) : pan(dx * step, dy * step));
+      const does = {
+        ArrowLeft: () => move(-1, 0), ArrowRight: () => move(1, 0), ArrowUp: () => move(0, -1), ArrowDown: () => move(0, 1),
+        "+": () => zoom(1.25, middle), "=": () => zoom(1.25, middle), "-": () => zoom(0.8, middle), 0: () => view.reset(),
+        m: () => view.set({ mesh: !view.mesh }), f: () => view.set({ surface: !this.surface }),
+      }[event.key];
+      if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      does();
+    });
+  }
+
+  /// The picture as it is seen, with its scale.
+  async png() {
+    this.draw();
+    const { width, height } = this.canvas, d = this.dense, wide = 90 * d, whole = element("canvas", { width: width + wide, height: height + 30 * d }), pen = whole.getContext("2d");
+    pen.fillStyle = getComputedStyle(this.frame).getPropertyValue("--paper");
+    pen.fillRect(0, 0, whole.width, whole.height);
+    pen.drawImage(this.canvas, 0, 30 * d);
+    pen.drawImage(this.over, 0, 30 * d);
+    pen.imageSmoothingEnabled = false;
+    pen.drawImage(this.scaleBar, width + 8 * d, 40 * d, 14 * d, height - 20 * d);
+    pen.fillStyle = getComputedStyle(this.frame).getPropertyValue("--ink");
+    pen.font = `${13 * d}px system-ui, sans-serif`;
+    pen.fillText(this.title.textContent, 10 * d, 20 * d);
+    [...this.ticks.children].forEach((tick, i) => pen.fillText(tick.textContent, width + 27 * d, 45 * d + (i / 4) * (height - 20 * d)));
+    return new Promise((resolve) => { whole.toBlob(resolve, "image/png"); });
+  }
+}
+

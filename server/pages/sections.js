@@ -1,0 +1,147 @@
+// What stands below the picture of a solve, a section each.
+
+import { element, percent, seconds, short, table } from "/pages/element.js";
+import { plot } from "/pages/plot.js";
+
+const numbers = (name, ...tables) => element("details", {}, element("summary", {}, name), tables);
+export const section = (id, title, ...content) => element("section", { id, ariaLabel: title }, element("h2", {}, title), content);
+
+// --- the bound
+
+const parts = {
+  constitutive: "stress and strain that do not fit each other",
+  contact: "pressure where the body does not touch",
+  oscillation: "loads that the mesh does not resolve",
+  equilibration: "what brings the stress into balance",
+  asymmetry: "stress that is not symmetric",
+};
+
+export function boundSection({ error_bound: bound, notes = [], advice }) {
+  if (!bound) return section("bound", "Error bound", element("p", {}, "Nothing finite is known of the error."), notesOf(notes, advice));
+  const { value, relative, guaranteed, unmet = [], energy_lower: lower, energy_upper: upper } = bound;
+  const squares = Object.values(bound.parts).map((part) => part * part), whole = squares.reduce((a, b) => a + b, 0) || 1;
+  const verdict = guaranteed
+    ? `Proved: stress and displacement together are off by at most ${percent(relative)} of the stress, in the energy norm.`
+    : `Estimated: stress and displacement together are off by about ${percent(relative)} of the stress, in the energy norm. It is not proved here.`;
+  return section("bound", "Error bound",
+    element("p", { className: guaranteed ? "verdict good" : "verdict open" }, verdict),
+    unmet.length ? element("ul", {}, unmet.map((reason) => element("li", {}, reason))) : "",
+    element("p", {}, `The energy of the exact solution lies between ${short(lower, 8)} and ${short(upper, 8)}. The bound itself is ${short(value, 6)}; of its square come`),
+    element("ul", { className: "shares" }, Object.entries(bound.parts).map(([name, part], i) => {
+      const bar = element("span", { className: "bar" });
+      bar.style.inlineSize = `${(100 * squares[i]) / whole}%`;
+      return element("li", {}, element("span", { className: "name" }, `${percent(squares[i] / whole)} from ${parts[name] ?? name}`), element("span", { className: "track" }, bar), element("span", { className: "quiet small" }, `${name} ${short(part, 4)}`));
+    })), notesOf(notes, advice));
+}
+
+const notesOf = (notes, advice) => [advice && element("p", { className: "notice bad" }, advice), notes.map((note) => element("p", { className: "notice" }, note))];
+
+// --- the contact
+
+function lengths(points) {
+  const along = new Float64Array(points.length / 2);
+  for (let i = 1; i < along.length; ++i) along[i] = along[i - 1] + Math.hypot(points[2 * i] - points[2 * i - 2], points[2 * i + 1] - points[2 * i - 1]);
+  return along;
+}
+
+/// From half way to the row before to half way to the row behind.
+function closedStretches(along, open) {
+  const stretches = [], last = along.length - 1, edge = (i, j) => (j < 0 || j > last ? along[i] : (along[i] + along[j]) / 2);
+  for (let i = 0; i <= last; ++i) {
+    if (open[i]) continue;
+    const first = i;
+    while (i < last && !open[i + 1]) ++i;
+    stretches.push([edge(first, first - 1), edge(i, i + 1)]);
+  }
+  return stretches;
+}
+
+export function contactStrips(contact) {
+  return Object.entries(contact).map(([name, { points, clearance, pressure, gap, open }]) => {
+    const along = lengths(points), stretches = closedStretches(along, open), x = { name: "arc length", values: along };
+    const rows = Array.from(along, (s, i) => [s, points[2 * i], points[2 * i + 1], clearance[i], pressure[i], gap[i], open[i] ? "open" : "closed"]);
+    return [element("h3", {}, name), element("p", { className: "quiet small" }, stretches.length ? `Closed on ${stretches.map(([from, to]) => `${short(from, 3)} … ${short(to, 3)}`).join(", ")} (shaded).` : "Open everywhere."),
+      element("div", { className: "beside wide" }, plot({ label: `Pressure along ${name}`, x, y: { name: "pressure", zero: true }, curves: [{ name: "pressure", values: pressure, dots: along.length < 80 }], stretches, high: 210 }),
+      plot({ label: `Clearance and gap along ${name}`, x, y: { name: "length", zero: true }, curves: [{ name: "clearance", values: clearance, dots: along.length < 80 }, { name: "gap", values: gap, broken: true, curve: 1 }], stretches, high: 210 })),
+      numbers(`Numbers of ${name}`, table(`Contact on ${name}`, ["arc length", "x", "y", "clearance", "pressure", "gap", "state"], rows))];
+  });
+}
+
+export function contactSection(contact, summary) {
+  const { force, max_pressure: most, length } = summary.contact;
+  return section("contact", "Contact", Object.keys(contact).length
+    ? [element("p", {}, `Force ${short(force, 6)}, largest pressure ${short(most, 6)}, closed on a length of ${short(length, 6)}.`), contactStrips(contact)]
+    : element("p", {}, "No part of the boundary is a contact."));
+}
+
+// --- levels, study, sweep
+
+export function levelsSection({ levels }, view) {
+  const body = element("div");
+  const show = () => {
+    const last = levels.level.length - 1, own = view.level ? Math.min(view.level - 1, last) : last;
+    const slider = element("input", { type: "range", min: 1, max: last + 1, step: 1, value: own + 1, ariaLabel: "Level" });
+    slider.addEventListener("input", () => view.set({ level: slider.valueAsNumber }));
+    const facts = ["triangles", "unknowns", "iterations"].map((name) => `${short(levels[name][own])} ${name}`).join(", ");
+    const focused = body.contains(document.activeElement);
+    body.replaceChildren(element("label", {}, "Level ", slider, ` ${own + 1} of ${last + 1}`),
+      element("p", {}, `${facts}, bound ${short(levels.bound[own], 4)}, that is ${percent(levels.relative[own])}, after ${seconds(levels.seconds[own])}.`),
+      plot({ label: "Relative error bound by triangles", x: { name: "triangles", values: levels.triangles, log: true }, y: { name: "relative bound", log: true }, curves: [{ name: "relative bound", values: levels.relative, dots: true }], marked: own, onPick: (i) => view.set({ level: i + 1 }) }));
+    if (focused) slider.focus();
+  };
+  let shown = view.level;
+  view.onChange(() => { if (view.level !== shown) { shown = view.level; show(); } });
+  show();
+  const names = ["level", "triangles", "unknowns", "bound", "relative", "iterations", "seconds"];
+  return section("levels", "Levels of the mesh", body, numbers("Numbers of the levels", table("Levels", names, Array.from(levels.level, (_, i) => names.map((name) => levels[name][i])))));
+}
+
+const errors = ["bound", "total_error", "energy_norm_error", "stress_error", "displacement_error", "energy_error"];
+const inWords = (name) => name.replaceAll("_", " ");
+
+export function studySection({ rows, rates }) {
+  const plots = rates.map((fitted) => {
+    const own = rows.filter(({ scheme, error }) => scheme === fitted.scheme && !error);
+    const curves = errors.map((key, curve) => ({ name: inWords(key), values: own.map((row) => row[key] ?? NaN), dots: true, curve })).filter(({ values }) => values.some((value) => value > 0));
+    const fits = errors.filter((key) => key in fitted).map((key) => `${inWords(key)} ${short(fitted[key], 3)}`);
+    return [element("h3", {}, fitted.scheme), plot({ label: `Errors of the ${fitted.scheme} scheme by triangles`, x: { name: "triangles", values: own.map(({ triangles }) => triangles), log: true }, y: { name: "error", log: true }, curves, high: 280 }),
+      fits.length ? element("p", {}, `Fitted rates α, as n^(−α/2) in the triangles n: ${fits.join(", ")}.`) : ""];
+  });
+  const keys = ["scheme", "triangles", ...errors, "seconds"].filter((key) => rows.some((row) => key in row));
+  return section("study", "Study", plots, rows.filter(({ error }) => error).map(({ scheme, error }) => element("p", { className: "notice bad" }, `${scheme}: ${error}`)),
+    numbers("Numbers of the study", table("Study", keys.map(inWords), rows.map((row) => keys.map((key) => row[key] ?? "–")))));
+}
+
+export function sweepSection(sweep, view) {
+  const body = element("div");
+  const name = (entry, i) => entry.title || `entry ${i + 1}`;
+  const of = (read) => sweep.map((entry) => (entry.summary ? read(entry.summary) : NaN));
+  const choice = element("select", { ariaLabel: "Entry" }, sweep.map((entry, i) => element("option", { value: i + 1 }, `${i + 1}: ${name(entry, i)}`)));
+  choice.addEventListener("change", () => view.set({ entry: Number(choice.value) }));
+  const show = () => {
+    const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
+    choice.value = own + 1;
+    const x = { name: "entry", values: sweep.map((_, i) => i + 1) }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
+    body.replaceChildren(element("div", { className: "beside" },
+      plot({ label: "Contact force by entry", x, y: { name: "force", zero: true }, curves: [{ name: "contact force", values: of(({ contact }) => contact.force), dots: true }], ...picked }),
+      plot({ label: "Largest pressure by entry", x, y: { name: "pressure", zero: true }, curves: [{ name: "largest pressure", values: of(({ contact }) => contact.max_pressure), dots: true }], ...picked }),
+      plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),
+      element("h3", {}, name(entry, own)), entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact).flat() : []));
+  };
+  let shown = view.entry;
+  view.onChange(() => { if (view.entry !== shown) { shown = view.entry; show(); } });
+  show();
+  const rows = sweep.map((entry, i) => [name(entry, i), entry.status, ...["force", "max_pressure", "length"].map((key) => entry.summary?.contact[key] ?? "–"), entry.summary?.energy ?? "–", entry.summary?.iterations ?? "–"]);
+  return section("sweep", "Sweep", element("p", {}, element("label", {}, "Entry ", choice)), body, numbers("Numbers of the sweep", table("Sweep", ["entry", "status", "force", "largest pressure", "closed length", "energy", "iterations"], rows)));
+}
+
+// --- figures
+
+export function figuresSection(summary) {
+  const { unknowns, timings, residuals, parts: reactions } = summary;
+  const pairs = (own) => Object.entries(own).map(([name, value]) => [name.replaceAll("_", " "), value]);
+  return section("figures", "Figures", element("div", { className: "beside" },
+    table("Unknowns", ["of", "number"], pairs(unknowns)), table("Residuals, relative", ["of", "size"], pairs(residuals)),
+    table("Seconds", ["for", "time"], pairs(timings)),
+    table("What acts on the body through each part", ["part", "force", "moment"], Object.entries(reactions).map(([name, { force, moment }]) => [name, typeof force === "number" ? force : Array.from(force, (each) => short(each, 6)).join(", "), moment ?? "–"]))));
+}

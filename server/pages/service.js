@@ -1,0 +1,128 @@
+// Asks the service. Where it wants a token, that is asked for once and kept as long as the tab is open.
+
+import { element } from "/pages/element.js";
+
+/// A refusal of the service in its own words (RFC 9457).
+export class Refusal extends Error {
+  constructor(status, document) {
+    super(document.detail || document.title || `The service answered with ${status}.`);
+    this.status = status;
+    this.faults = document.errors ?? [];
+  }
+}
+
+let asking = null;
+
+/// Resolves when a token was entered.
+function askForToken(why) {
+  asking ??= new Promise((entered) => {
+    const token = element("input", { type: "password", autocomplete: "off", required: true, className: "code", id: "token" });
+    const form = element("form", { method: "dialog" }, element("h2", {}, "A token, please"), element("p", {}, why),
+      element("p", {}, element("label", { htmlFor: "token" }, "Token"), " ", token), element("button", { className: "main" }, "Go on"));
+    const dialog = element("dialog", {}, form);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      sessionStorage.setItem("token", token.value.trim());
+      dialog.close();
+      dialog.remove();
+      asking = null;
+      entered();
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+  return asking;
+}
+
+export function withToken(headers) {
+  const token = sessionStorage.getItem("token");
+  return token ? { ...headers, Authorization: `Bearer ${token}` } : headers;
+}
+
+async function refusalOf(reply) {
+  return new Refusal(reply.status, await reply.json().catch(() => ({})));
+}
+
+/// The reply to a request. Throws Refusal, and TypeError if the service cannot be reached.
+export async function ask(path, { method = "GET", headers = {}, body, signal } = {}) {
+  for (;;) {
+    const reply = await fetch(path, { method, headers: withToken(headers), body, signal, cache: "no-store" });
+    if (reply.ok) return reply;
+    const refusal = await refusalOf(reply);
+    if (reply.status !== 401) throw refusal;
+    await askForToken(refusal.message);
+  }
+}
+
+export async function getJson(path, options = {}) {
+  return (await ask(path, { ...options, headers: { Accept: "application/json", ...options.headers } })).json();
+}
+
+export const postJson = (path, body, signal) =>
+  getJson(path, { method: "POST", body, signal, headers: { "Content-Type": "application/json" } });
+
+/// A document in CBOR as bytes; `onProgress` is told how many have come.
+export async function getBytes(path, onProgress = () => {}) {
+  const reply = await ask(path, { headers: { Accept: "application/cbor" } });
+  const pieces = [];
+  let length = 0;
+  const reader = reply.body.getReader();
+  for (let piece = await reader.read(); !piece.done; piece = await reader.read()) {
+    pieces.push(piece.value);
+    length += piece.value.length;
+    onProgress(length);
+  }
+  const all = new Uint8Array(length);
+  let at = 0;
+  for (const piece of pieces) {
+    all.set(piece, at);
+    at += piece.length;
+  }
+  return all;
+}
+
+/// Server-sent events, until the stream says that all is told; after a loss it goes on behind the last event.
+/// (EventSource cannot show a token.) `tell(name, id, data)`; `lost(true | false)` says whether the service is away.
+export async function follow(path, tell, lost = () => {}) {
+  let last = "", wait = 100;
+  for (;;) {
+    try {
+      const reply = await ask(path, { headers: { Accept: "text/event-stream", ...(last && { "Last-Event-ID": last }) } });
+      lost(false);
+      if (reply.status === 204) return;
+      wait = 100;
+      const ended = await readEvents(reply, (name, id, data) => {
+        if (id) last = id;
+        tell(name, id, data);
+        return name !== "progress";
+      });
+      if (ended) return;
+    } catch (error) {
+      if (error instanceof Refusal && error.status < 500 && error.status !== 429) throw error;
+    }
+    lost(true);
+    await new Promise((resolve) => setTimeout(resolve, wait));
+    wait = Math.min(2 * wait, 2000);
+  }
+}
+
+/// False if the stream broke before `tell` returned true.
+async function readEvents(reply, tell) {
+  const reader = reply.body.pipeThrough(new TextDecoderStream()).getReader();
+  let text = "";
+  for (let piece = await reader.read(); !piece.done; piece = await reader.read()) {
+    text += piece.value;
+    for (let end = text.indexOf("\n\n"); end >= 0; end = text.indexOf("\n\n")) {
+      const members = Object.fromEntries(text.slice(0, end).split("\n").map((line) => {
+        const colon = line.indexOf(":");
+        return [line.slice(0, colon), line.slice(colon + 1).trimStart()];
+      }));
+      text = text.slice(end + 2);
+      if (members.data !== undefined && tell(members.event, members.id, JSON.parse(members.data))) {
+        reader.cancel();
+        return true;
+      }
+    }
+  }
+  return false;
+}

@@ -1,0 +1,148 @@
+// A solve: its picture first, below it what it found out; while it runs its history, row by row.
+
+import { decode } from "/pages/cbor.js";
+import { agree, controlsOf } from "/pages/controls.js";
+import { bytes, element, seconds, short, state } from "/pages/element.js";
+import { Figure } from "/pages/figure.js";
+import { scaleOf } from "/pages/colours.js";
+import { History } from "/pages/history.js";
+import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
+import { ask, follow, getBytes, getJson } from "/pages/service.js";
+import { shell } from "/pages/shell.js";
+import { View } from "/pages/view.js";
+
+const main = shell();
+const path = location.pathname, view = new View();
+const head = element("div", { className: "head" }), picture = element("div", { className: "pictures" }), sections = element("div", { className: "sections" });
+const history = new History();
+main.append(head, picture, history.whole, sections);
+
+const ended = ({ status }) => !["queued", "running"].includes(status);
+const failed = (error) => picture.replaceChildren(element("p", { className: "notice bad", role: "alert" }, error.message));
+
+// --- the head
+
+function showHead(solve) {
+  document.title = `${solve.title || "A solve"} · Signorini`;
+  const { summary, error, progress, links } = solve;
+  const button = element("button", { type: "button" }, ended(solve) ? "Delete" : "Cancel");
+  button.addEventListener("click", async () => {
+    button.disabled = true;
+    try {
+      await ask(links.self, { method: "DELETE" });
+      if (ended(solve)) location.assign("/v1/solves");
+    } catch (refusal) {
+      failed(refusal);
+    }
+  });
+  const facts = summary ? [`${short(summary.triangles)} triangles`, `${short(summary.iterations)} iterations, ${summary.method.replaceAll("_", " ")}`, seconds(summary.timings.total), bytes(summary.peak_memory_bytes)]
+    : [progress.phase, progress.level && `level ${progress.level.number}`, progress.iteration > 0 && `iteration ${short(progress.iteration)}`, progress.residual > 0 && `residual ${short(progress.residual, 3)}`].filter(Boolean);
+  const files = summary ? [["result", "JSON"], ["vtu", "VTU"], ["picture", "Plain picture"], ["contact_csv", "Contact CSV"], ["history_csv", "History CSV"]].map(([key, name]) => fileLink(links[key], name)) : [];
+  head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
+    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · "))),
+    error ? element("p", { className: "notice bad" }, element("strong", {}, `${error.title}. `), error.detail ?? "", (error.errors ?? []).map((each) => element("span", { className: "line" }, element("code", {}, each.pointer ?? ""), ` ${each.detail}`))) : "",
+    element("div", { className: "row" }, button, files));
+}
+
+/// A link that shows the token if there is one.
+function fileLink(href, name) {
+  const link = element("a", { href, className: "small" }, name);
+  link.addEventListener("click", async (event) => {
+    if (!sessionStorage.getItem("token")) return;
+    event.preventDefault();
+    const url = URL.createObjectURL(await (await ask(href)).blob());
+    element("a", { href: url, download: href.split("/").slice(-2).join("-") }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  });
+  return link;
+}
+
+// --- the result
+
+/// What the picture and the sections show of a solve that has a result.
+async function resultOf(solve, onProgress) {
+  const body = (await getJson(`${solve.links.result}?fields=problem`)).problem.model === "elasticity";
+  const fields = ["mesh", "displacement", "stress", "error_squares", "contact", "sweep", "study", ...(body ? ["principal", "von_mises"] : [])];
+  return decode(await getBytes(`${solve.links.result}?fields=${fields}`, onProgress));
+}
+
+async function showResult(solve) {
+  const said = element("p", { className: "quiet", role: "status" }, "Loading the result …");
+  picture.replaceChildren(said);
+  const result = await resultOf(solve, (count) => { said.textContent = `Loading the result … ${bytes(count)}`; });
+  const results = [result], solves = [solve];
+  if (view.with) {
+    solves.push(await getJson(`/v1/solves/${encodeURIComponent(view.with)}`));
+    results.push(await resultOf(solves[1]));
+  }
+  showPictures(results, solves);
+  const { summary } = solve;
+  sections.replaceChildren(...[boundSection(summary), contactSection(result.contact, summary), history.whole, summary.levels && levelsSection(summary, view),
+    result.study && studySection(result.study), result.sweep && sweepSection(result.sweep, view), figuresSection(summary)].filter(Boolean));
+}
+
+function showPictures(results, solves) {
+  const figures = results.map((result, i) => new Figure(result, view, solves[i].title || solves[i].id));
+  if (figures.length > 1) link(figures);
+  picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id)),
+    element("div", { className: figures.length > 1 ? "two" : "one" }, figures.map((figure, i) => (figures.length > 1 ? element("div", {}, element("h2", {}, i ? element("a", { href: solves[i].links.self }, figure.name) : figure.name), figure.whole) : figure.whole))),
+    element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? "." : ", f for flat."));
+}
+
+/// Two figures have one scale, unless one shows their difference.
+function link(figures) {
+  const comparable = agree(figures);
+  const common = () => {
+    const { fixed, low, high } = view;
+    return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(Math.min(...figures.map(({ least }) => least)), Math.max(...figures.map(({ most }) => most)));
+  };
+  view.onChange(() => { figures[1].other = comparable && view.difference ? figures[0] : null; });
+  figures[1].other = comparable && view.difference ? figures[0] : null;
+  for (const figure of figures) figure.sharedScale = () => {
+    if (view.difference && comparable) return figure.ownScale();
+    figures.forEach((each) => each.prepare());
+    return common();
+  };
+}
+
+// --- as it happens
+
+function tell(name, id, data) {
+  if (data.history) history.add(id, data.history);
+  if (name !== "progress") return showEnd(data);
+  if (current) {
+    current.status = "running";
+    Object.assign(current.progress, data);
+    showHeadSoon();
+  }
+}
+
+let current = null, waiting = false;
+function showHeadSoon() {
+  if (waiting) return;
+  waiting = true;
+  setTimeout(() => { waiting = false; if (!ended(current)) showHead(current); }, 100);
+}
+
+async function showEnd(solve) {
+  current = solve;
+  showHead(solve);
+  const { summary } = solve;
+  history.end.textContent = summary ? `It ended as ${summary.outcome.replaceAll("_", " ")} after ${short(summary.iterations)} iterations.` : `It is ${solve.status}.`;
+  if (!summary) return picture.replaceChildren();
+  try {
+    await showResult(solve);
+  } catch (error) {
+    failed(error);
+  }
+}
+
+try {
+  current = await getJson(path);
+  showHead(current);
+  if (!ended(current)) picture.replaceChildren(element("p", { className: "quiet" }, "The picture comes when it is solved."));
+  await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = "The service cannot be reached; trying again."; else if (!ended(current)) history.end.textContent = ""; });
+} catch (error) {
+  if (!current) head.replaceChildren(element("h1", {}, "A solve"));
+  failed(error);
+}

@@ -1,0 +1,145 @@
+// The solves: what waits, runs and has ended, as it happens.
+
+import { aria, element, percent, short, state } from "/pages/element.js";
+import { ask, getJson } from "/pages/service.js";
+import { shell } from "/pages/shell.js";
+
+const pause = 1000; // ms between two looks
+const isOpen = ({ status }) => status === "queued" || status === "running";
+
+const main = shell();
+const rows = new Map(); // id → { row, solve, box, cells }
+let count = 50;
+
+const query = new URLSearchParams(location.search);
+const status = element("select", {}, ["", "queued", "running", "succeeded", "failed", "cancelled"].map((value) => element("option", { value }, value || "any")));
+status.value = query.get("status") ?? "";
+const title = element("input", { type: "search", value: query.get("title") ?? "", placeholder: "part of it" });
+const cancel = element("button", { type: "button" }, "Cancel");
+const remove = element("button", { type: "button" }, "Delete");
+const all = aria(element("input", { type: "checkbox" }), { "aria-label": "Choose all" });
+const compare = element("a", { className: "button", hidden: true }, "Side by side");
+const more = element("button", { type: "button", hidden: true }, "Show more");
+const said = element("p", { className: "quiet", role: "status" }, "Loading …");
+const body = element("tbody");
+const column = (name, className = "") => aria(element("th", { className }, name), { scope: "col" });
+main.append(element("h1", {}, "Solves"),
+  element("div", { className: "row" }, element("label", {}, "Status ", status), element("label", {}, "Title ", title),
+    element("span", { className: "row last" }, cancel, remove, compare)), said,
+  element("div", { className: "card flush" }, element("table", { className: "solves" }, element("thead", {}, element("tr", {},
+    aria(element("th", {}, all), { scope: "col" }), column("Title"), column("State"), column("Progress"), column("Error bound"), column("Posted"))), body)),
+  element("p", {}, more));
+
+function progressOf({ status: own, progress, summary, error }) {
+  if (error) return error.title;
+  if (own === "queued") return "waits for a worker";
+  const { phase, iteration, residual, level, sweep, study } = progress;
+  const counted = sweep ?? study;
+  if (own === "running") return [phase, counted && `${counted.done} of ${counted.count}`, level && `level ${level.number}, ${short(level.triangles)} triangles`,
+    iteration > 0 && `iteration ${short(iteration)}`, residual > 0 && `residual ${short(residual, 2)}`].filter(Boolean).join(" · ");
+  return summary ? `${short(summary.triangles)} triangles, ${short(summary.iterations)} iterations` : "";
+}
+
+function boundOf({ progress, summary }) {
+  if (progress.level && !summary) return `${percent(progress.level.relative)} so far`;
+  const bound = summary?.error_bound;
+  return bound ? `${percent(bound.relative)}${bound.guaranteed ? "" : ", not proved"}` : "";
+}
+
+const clock = new Intl.DateTimeFormat(undefined, { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
+
+function show(solve) {
+  let own = rows.get(solve.id);
+  if (!own) {
+    const box = element("input", { type: "checkbox" });
+    const link = element("a", { href: solve.links.self });
+    const cells = ["Title", "State", "Progress", "Error bound", "Posted"].map((name) => { const cell = element("td"); cell.dataset.name = name; return cell; });
+    cells[0].append(link);
+    own = { row: element("tr", {}, element("td", {}, box), cells), box, link, cells };
+    box.addEventListener("change", choose);
+    rows.set(solve.id, own);
+  }
+  own.solve = solve;
+  const name = solve.title || "without a title";
+  own.link.textContent = name;
+  aria(own.box, { "aria-label": `Choose ${name}` });
+  own.cells[1].replaceChildren(state(solve.status));
+  own.cells[2].textContent = progressOf(solve);
+  own.cells[3].textContent = boundOf(solve);
+  own.cells[4].textContent = clock.format(new Date(solve.created_at));
+  return own.row;
+}
+
+const chosen = () => [...rows.values()].filter(({ box, row }) => box.checked && row.isConnected);
+
+function choose() {
+  const own = chosen(), open = own.filter(({ solve }) => isOpen(solve)), shown = [...rows.values()].filter(({ row }) => row.isConnected);
+  cancel.disabled = !open.length;
+  remove.disabled = open.length === own.length;
+  cancel.textContent = open.length ? `Cancel ${open.length}` : "Cancel";
+  remove.textContent = own.length > open.length ? `Delete ${own.length - open.length}` : "Delete";
+  all.checked = own.length > 0 && own.length === shown.length;
+  all.indeterminate = own.length > 0 && own.length < shown.length;
+  compare.hidden = own.length !== 2 || own.some(({ solve }) => !solve.summary);
+  if (!compare.hidden) compare.href = `${own[0].solve.links.self}#with=${own[1].solve.id}`;
+}
+
+let looking = false, again = false;
+
+async function look() {
+  if (looking) { again = true; return; }
+  looking = true;
+  try {
+    const wanted = new URLSearchParams({ limit: String(count) });
+    if (status.value) wanted.set("status", status.value);
+    const { solves, links } = await getJson(`/v1/solves?${wanted}`);
+    const part = title.value.trim().toLowerCase();
+    const own = solves.filter((solve) => solve.title.toLowerCase().includes(part)).map(show);
+    if (own.length !== body.children.length || own.some((row, i) => row !== body.children[i])) body.replaceChildren(...own);
+    for (const [id, { row }] of rows) if (!row.isConnected) rows.delete(id);
+    more.hidden = !links.next || count >= 1000;
+    const open = solves.filter(isOpen).length;
+    said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : solves.length || status.value ? "None is like that." : "Nothing was posted yet.";
+  } catch (error) {
+    said.textContent = error instanceof TypeError ? "The service cannot be reached; trying again." : error.message;
+  }
+  choose();
+  looking = false;
+  if (again) { again = false; look(); }
+}
+
+/// DELETE cancels what has not ended and removes what has.
+async function dismiss(own) {
+  const refused = (await Promise.allSettled(own.map(({ solve }) => ask(solve.links.self, { method: "DELETE" })))).filter((each) => each.status === "rejected");
+  await look();
+  if (refused.length) said.textContent = refused[0].reason.message;
+}
+
+function confirmed(question) {
+  return new Promise((answer) => {
+    const yes = element("button", { className: "main", value: "yes" }, "Delete"), no = element("button", { value: "no" }, "Keep");
+    const dialog = element("dialog", {}, element("form", { method: "dialog" }, element("p", {}, question), element("div", { className: "row" }, yes, no)));
+    dialog.addEventListener("close", () => { dialog.remove(); answer(dialog.returnValue === "yes"); });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}
+
+cancel.addEventListener("click", () => dismiss(chosen().filter(({ solve }) => isOpen(solve))));
+remove.addEventListener("click", async () => {
+  const own = chosen().filter(({ solve }) => !isOpen(solve));
+  if (await confirmed(own.length === 1 ? `Delete “${own[0].solve.title || "without a title"}” and its result?` : `Delete ${own.length} solves and their results?`)) dismiss(own);
+});
+all.addEventListener("change", () => {
+  for (const { box, row } of rows.values()) box.checked = all.checked && row.isConnected;
+  choose();
+});
+more.addEventListener("click", () => { count = Math.min(1000, 4 * count); look(); });
+for (const control of [status, title]) control.addEventListener("input", () => {
+  const wanted = new URLSearchParams(Object.entries({ status: status.value, title: title.value.trim() }).filter(([, value]) => value));
+  history.replaceState(null, "", wanted.size ? `?${wanted}` : location.pathname);
+  look();
+});
+setInterval(() => { if (!document.hidden) look(); }, pause);
+document.addEventListener("visibilitychange", () => { if (!document.hidden) look(); });
+look();
