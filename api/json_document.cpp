@@ -34,6 +34,55 @@ std::string cause(std::string message) {
   return message;
 }
 
+MalformedJson nested_too_deeply() {
+  return MalformedJson("arrays and objects are nested deeper than " + std::to_string(limits::nesting) +
+                       " levels");
+}
+
+/// Why the library ended the parse at this byte, the first of which is 1.
+MalformedJson no_json(std::string_view text, std::size_t position, const nlohmann::detail::exception& error) {
+  const std::string where = " (" + place(text, position == 0 ? 0 : position - 1) + ")";
+  if (dynamic_cast<const json::out_of_range*>(&error) != nullptr)
+    return MalformedJson("a number is too large: the largest is 1.7976931348623157e308" + where);
+  return MalformedJson("the body is not JSON: " + cause(error.what()) + where);
+}
+
+/// Reads over a document. Two levels more than a problem may have are for the list in which problems stand.
+class Skimmer : public nlohmann::json_sax<json> {
+ public:
+  explicit Skimmer(std::string_view text) : text_(text) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return false; }
+  bool key(string_t&) override { return true; }
+  bool start_object(std::size_t) override { return open(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    throw no_json(text_, position, error);
+  }
+
+ private:
+  bool open() {
+    if (++depth_ > limits::nesting + 2) throw nested_too_deeply();
+    return true;
+  }
+  bool close() {
+    --depth_;
+    return true;
+  }
+
+  std::string_view text_;
+  std::size_t depth_ = 0;
+};
+
 /// Builds the document from the parser's events, and ends the parse at what this service does not take.
 /// Nesting and numbers are limited while parsing: a document that is too large never comes into being.
 class Builder : public nlohmann::json_sax<json> {
@@ -66,10 +115,7 @@ class Builder : public nlohmann::json_sax<json> {
 
   bool parse_error(std::size_t position, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    const std::string where = " (" + place(text_, position == 0 ? 0 : position - 1) + ")";
-    if (dynamic_cast<const json::out_of_range*>(&error) != nullptr)
-      throw MalformedJson("a number is too large: the largest is 1.7976931348623157e308" + where);
-    throw MalformedJson("the body is not JSON: " + cause(error.what()) + where);
+    throw no_json(text_, position, error);
   }
 
  private:
@@ -84,9 +130,7 @@ class Builder : public nlohmann::json_sax<json> {
   }
 
   bool open(json container) {
-    if (open_.size() == limits::nesting)
-      throw MalformedJson("arrays and objects are nested deeper than " + std::to_string(limits::nesting) +
-                          " levels");
+    if (open_.size() == limits::nesting) throw nested_too_deeply();
     open_.push_back(insert(std::move(container)));
     names_.emplace_back();
     return true;
@@ -181,6 +225,13 @@ void refuse_what_is_no_text(std::string_view text) {
 }
 
 }  // namespace
+
+void require_json(std::string_view text) {
+  refuse_what_is_no_text(text);
+  refuse_long_numbers(text);
+  Skimmer skimmer(text);
+  json::sax_parse(text.begin(), text.end(), &skimmer);
+}
 
 json parse_json(std::string_view text, Observer* observer) {
   refuse_what_is_no_text(text);

@@ -17,6 +17,10 @@ class MalformedJson : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Throws MalformedJson for a text that is no JSON document, whatever it holds and however much; nothing is
+/// made of it. Members may be there twice.
+void require_json(std::string_view text);
+
 /// Parses a document strictly. Throws MalformedJson, whose text names the place (line and column, or the
 /// JSON pointer of a duplicate member), and Cancelled if there is an observer who ends it.
 nlohmann::json parse_json(std::string_view text, Observer* observer = nullptr);

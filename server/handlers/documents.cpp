@@ -67,6 +67,10 @@ std::string link_to(const std::string& id) {
   return "/v1/solves/" + id;
 }
 
+std::string link_to_batch(const std::string& id) {
+  return "/v1/batches/" + id;
+}
+
 void write_progress_members(DocumentWriter& out, const Progress& progress) {
   member(out, "phase", progress.phase ? std::optional<std::string>(name(*progress.phase)) : std::nullopt);
   out.member("iteration", progress.iteration);

@@ -11,6 +11,9 @@ namespace signorini::server {
 /// `/v1/solves/{id}`.
 std::string link_to(const std::string& id);
 
+/// `/v1/batches/{id}`.
+std::string link_to_batch(const std::string& id);
+
 /// How far a solve is, as members of an object.
 void write_progress_members(api::DocumentWriter& out, const Progress& progress);
 

@@ -152,14 +152,6 @@ class SolveEvents : public EventSource {
   std::optional<Progress> told_;
 };
 
-HttpError too_many_subscribers(std::size_t limit) {
-  return {503,
-          {"too-many-subscribers", "Too many subscribers",
-           std::to_string(limit) + " streams of events are open, which is the limit (--max-subscribers). "
-                                   "GET the status document now and then instead."},
-          {{"Retry-After", "10"}}};
-}
-
 Response event_response(const Job& job) {
   Response response = Response::empty(200);
   response.job = job.id;
@@ -191,6 +183,15 @@ Response ended_response(Service& service, Job job, const Place& place) {
 }
 
 }  // namespace
+
+HttpError too_many_subscribers(std::size_t limit) {
+  return {503,
+          {"too-many-subscribers", "Too many subscribers",
+           std::to_string(limit) +
+               " streams of events and of results are open, which is the limit (--max-subscribers). "
+               "GET the status document now and then instead."},
+          {{"Retry-After", "10"}}};
+}
 
 Response get_events(Service& service, const Request& request) {
   allow_only(request.query, {});

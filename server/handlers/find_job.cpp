@@ -48,6 +48,14 @@ JobWithResult find_job_with_result(Service& service, const Request& request) {
   return with_result(service, find_solved(service, request));
 }
 
+JobWithResult with_summary(Job job) {
+  Solution solution;
+  solution.summary = *job.verdict.summary;
+  JobResult result{std::make_shared<const std::string>(),
+                   std::make_shared<const Solution>(std::move(solution)), nullptr};
+  return {std::move(job), std::move(result)};
+}
+
 JobWithResult with_result(Service& service, Job job) {
   std::optional<JobResult> result = service.results.get(job.id);
   if (!result) throw unknown_solve();
@@ -55,6 +63,12 @@ JobWithResult with_result(Service& service, Job job) {
   if (job.verdict.summary && !result->solution)
     throw without_result(service.store.find(job.id).value_or(job));
   return {std::move(job), std::move(*result)};
+}
+
+void write_result_of(api::DocumentWriter& out, const JobWithResult& solved, const api::ResultFields& fields) {
+  const auto& [job, result] = solved;
+  const std::string error = error_to_json(job.verdict.error);
+  api::write_result(out, {job.id, name(job.status), *result.problem, error}, *result.solution, fields);
 }
 
 }  // namespace signorini::server

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "api/result_document.hpp"
 #include "server/handlers/service.hpp"
 #include "server/http/error.hpp"
 #include "server/http/request.hpp"
@@ -28,8 +29,14 @@ Job find_solved(Service& service, const Request& request);
 
 JobWithResult find_job_with_result(Service& service, const Request& request);
 
+/// A job that has a solution, of which only the summary is wanted.
+JobWithResult with_summary(Job job);
+
 /// A job that has ended, and what it found out. Throws HttpError 404 if it was removed meanwhile, 410 if what
 /// was stored is damaged.
 JobWithResult with_result(Service& service, Job job);
+
+/// The result document of a job with a solution.
+void write_result_of(api::DocumentWriter& out, const JobWithResult& solved, const api::ResultFields& fields);
 
 }  // namespace signorini::server

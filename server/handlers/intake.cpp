@@ -36,22 +36,6 @@ bool is_in_cbor(const Request& request) {
            " Send it as application/json or application/cbor: curl -H 'Content-Type: application/json'."});
 }
 
-/// Gives back to the system what a document has taken, once it is read: each thread's heap would keep it,
-/// tens of times a body's length, and there are tens of threads.
-class ReleasedMemory {
- public:
-  explicit ReleasedMemory(std::size_t body) : is_much_(body > 1 << 17) {}
-  ~ReleasedMemory() {
-    if (is_much_) malloc_trim(0);
-  }
-
-  ReleasedMemory(const ReleasedMemory&) = delete;
-  ReleasedMemory& operator=(const ReleasedMemory&) = delete;
-
- private:
-  const bool is_much_;
-};
-
 /// Ends the reading of a problem whose client has left.
 class WhileClientWaits : public Observer {
  public:
@@ -67,11 +51,6 @@ class WhileClientWaits : public Observer {
  private:
   const Request& request_;
 };
-
-/// Nobody hears it, but it stands in the log.
-HttpError client_left() {
-  return {400, {"client-left", "The client left", "The client left before its problem was read."}};
-}
 
 /// 413 for a problem that would be too large here: what in it is, and how to make it smaller.
 HttpError too_large(const std::string& kind, const std::string& what, const std::string& pointer,
@@ -131,14 +110,23 @@ void require_short_study(const Intake& intake, const Limits& limits) {
           "finest meshes out, or lower study.adaptive.max_triangles.");
 }
 
-/// Throws Cancelled besides if the client leaves.
-Intake read(const Request& request, const Limits& limits) {
+}  // namespace
+
+void require_readable(const Request& request) {
+  is_in_cbor(request);
+  require_known(list_of(request.headers, "Content-Encoding"));
+}
+
+std::string json_body(const Request& request, std::size_t max_bytes) {
+  const bool is_cbor = is_in_cbor(request);
+  std::string text = request.read_body(max_bytes);
+  return is_cbor ? json_of(text, max_bytes) : text;
+}
+
+Intake judge(std::string text, const Request& request, const Limits& limits) {
   WhileClientWaits observer(request);
   Intake intake;
-  const bool is_cbor = is_in_cbor(request);
-  intake.text = request.read_body(limits.max_body_bytes);
-  const ReleasedMemory released(intake.text.size());
-  if (is_cbor) intake.text = json_of(intake.text, limits.max_body_bytes);
+  intake.text = std::move(text);
   intake.request = api::parse_request(intake.text, &observer);
   observer.check();
   intake.estimate =
@@ -153,11 +141,12 @@ Intake read(const Request& request, const Limits& limits) {
   return intake;
 }
 
-}  // namespace
+HttpError client_left() {
+  return {400, {"client-left", "The client left", "The client left before its problem was read."}};
+}
 
-void require_readable(const Request& request) {
-  is_in_cbor(request);
-  require_known(list_of(request.headers, "Content-Encoding"));
+ReleasedMemory::~ReleasedMemory() {
+  if (is_much_) malloc_trim(0);
 }
 
 double Intake::memory() const {
@@ -165,8 +154,10 @@ double Intake::memory() const {
 }
 
 Intake take_in(Service& service, const Request& request) {
+  std::string text = json_body(request, service.limits.max_body_bytes);
+  const ReleasedMemory released(text.size());
   try {
-    return read(request, service.limits);
+    return judge(std::move(text), request, service.limits);
   } catch (const Cancelled&) {
     throw client_left();
   }

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <span>
-
-#include <spdlog/spdlog.h>
 
 #include "api/limits.hpp"
 #include "api/problem_members.hpp"
+#include "server/handlers/dismiss.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/documents.hpp"
-#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
-#include "server/log.hpp"
 
 namespace signorini::server {
 namespace {
@@ -54,29 +50,6 @@ ListQuery list_query(const Request& request) {
   return query;
 }
 
-/// What became of many solves that a client does not want any more.
-struct Dismissed {
-  std::size_t cancelled = 0, deleted = 0;
-};
-
-/// Cancels those that have not ended, and removes the others, some at a time.
-Dismissed dismiss(Service& service, std::span<const std::string> ids) {
-  constexpr std::size_t at_once = 100;
-  const Crew::Rest rest;
-  Dismissed dismissed;
-  for (; !ids.empty(); ids = ids.subspan(std::min(at_once, ids.size()))) {
-    const auto some = ids.first(std::min(at_once, ids.size()));
-    dismissed.deleted += service.store.remove_ended(some);
-    for (const std::string& id : some) {
-      if (!service.store.find(id)) continue;
-      const Dismissal dismissal = service.scheduler.dismiss(id);
-      dismissed.cancelled += dismissal == Dismissal::cancelled || dismissal == Dismissal::cancelling;
-      dismissed.deleted += dismissal == Dismissal::removed;
-    }
-  }
-  return dismissed;
-}
-
 /// 409: nothing was done yet.
 HttpError not_confirmed(const std::string& tag, std::size_t count) {
   const std::string number = std::to_string(count);
@@ -115,14 +88,7 @@ Response delete_tagged(Service& service, const Request& request) {
   const std::vector<std::string> ids = service.store.ids(query);
   const auto count = static_cast<long>(ids.size());
   if (confirmed != count) throw not_confirmed(*query.tag, ids.size());
-  const Dismissed dismissed = dismiss(service, ids);
-  spdlog::info("deleted={} cancelled={} by a tag", dismissed.deleted, dismissed.cancelled);
-  return document_response(request, 200, [dismissed](api::DocumentWriter& out) {
-    out.begin_object()
-        .member("cancelled", dismissed.cancelled)
-        .member("deleted", dismissed.deleted)
-        .end_object();
-  });
+  return dismissed_response(request, dismiss(service, ids));
 }
 
 }  // namespace signorini::server

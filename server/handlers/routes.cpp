@@ -1,8 +1,10 @@
 #include "server/handlers/routes.hpp"
 
+#include "server/handlers/batches.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/downloads.hpp"
 #include "server/handlers/events.hpp"
+#include "server/handlers/fields.hpp"
 #include "server/handlers/health.hpp"
 #include "server/handlers/intake.hpp"
 #include "server/handlers/lists.hpp"
@@ -49,6 +51,14 @@ Router routes(Service& service) {
       {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},
       {"POST", "/v1/studies", document_types, with(post_study), Audience::clients, has_result,
        require_readable},
+      {"POST", "/v1/batches", document_types, with(post_batch), Audience::clients, nullptr, require_readable,
+       true},
+      {"GET", "/v1/batches/{id}", document_types, with(get_batch)},
+      {"DELETE", "/v1/batches/{id}", document_types, with(delete_batch)},
+      {"GET",
+       "/v1/batches/{id}/results",
+       {ndjson_media_type, cbor_sequence_media_type},
+       with(get_batch_results)},
       {"POST", "/v1/validate", document_types, with(validate_problem), Audience::clients, nullptr,
        require_readable},
       {"GET", "/v1/examples", document_types, with(list_examples)},

@@ -1,49 +1,20 @@
 #include "server/handlers/solves.hpp"
 
-#include <algorithm>
-
 #include <spdlog/spdlog.h>
 
-#include "api/result_document.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/documents.hpp"
+#include "server/handlers/fields.hpp"
 #include "server/handlers/find_job.hpp"
 #include "server/handlers/intake.hpp"
+#include "server/handlers/submission.hpp"
 #include "server/handlers/wait.hpp"
-#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 #include "server/log.hpp"
 
 namespace signorini::server {
 namespace {
-
-using Header = std::pair<std::string, std::string>;
-
-HttpError unavailable(const std::string& kind, const std::string& title, const std::string& detail,
-                      const char* retry_after_seconds) {
-  return {503, {kind, title, detail}, {Header{"Retry-After", retry_after_seconds}}};
-}
-
-/// What `use` returns, its complaint about the fields turned into 400.
-template <typename Use>
-auto with_fields(const Use& use) {
-  try {
-    return use();
-  } catch (const InvalidProblem& invalid) {
-    throw bad_parameter("fields", invalid.faults().front().detail);
-  }
-}
-
-api::ResultFields fields_of(const Request& request) {
-  return with_fields(
-      [&] { return api::ResultFields::parse(parameter(request.query, "fields").value_or("")); });
-}
-
-/// Before a reply is begun: no status could follow then.
-void require_available(const api::ResultFields& fields, int components) {
-  with_fields([&] { fields.require_available(components); });
-}
 
 /// A document about the job, which lives as long as it is written: `write(out, about)`.
 template <typename Write>
@@ -69,88 +40,8 @@ Response result_response(Service& service, const Request& request, JobWithResult
                          const api::ResultFields& fields) {
   return job_response(service, request, 200, std::move(ended),
                       [fields](api::DocumentWriter& out, const JobWithResult& solved) {
-                        const auto& [job, result] = solved;
-                        const std::string error = error_to_json(job.verdict.error);
-                        const api::ResultHead head{job.id, name(job.status), *result.problem, error};
-                        api::write_result(out, head, *result.solution, fields);
+                        write_result_of(out, solved, fields);
                       });
-}
-
-JobWithResult with_summary(Job job) {
-  Solution solution;
-  solution.summary = *job.verdict.summary;
-  JobResult result{std::make_shared<const std::string>(),
-                   std::make_shared<const Solution>(std::move(solution)), nullptr};
-  return {std::move(job), std::move(result)};
-}
-
-HttpError key_reused(const std::string& key, const KeyReused& reused) {
-  return {422,
-          {"idempotency-key-reused", "The idempotency key belongs to another problem",
-           "The Idempotency-Key `" + key + "` came with another body before; its solve is " +
-               link_to(reused.job) + ". Take a new key for a new problem."}};
-}
-
-HttpError share_used_up(const std::string& name, std::size_t limit) {
-  return {
-      429,
-      {"share-used-up", "The share of the queue is used up",
-       std::to_string(limit) + " solves of `" + name + "` are waiting, which is its limit (--token-file)."},
-      {{"Retry-After", "5"}}};
-}
-
-/// Others work while the disk does.
-std::string queue(Service& service, NewJob job) {
-  const Crew::Rest rest;
-  return service.scheduler.submit(std::move(job));
-}
-
-/// Queues the problem and returns the id of its job, or of the earlier one with the same key and problem.
-std::string submit(Service& service, const Request& request, Intake intake,
-                   const std::optional<std::string>& key) {
-  NewJob job;
-  job.id = service.ids.next();
-  job.title = std::move(intake.request.title);
-  job.tags = std::move(intake.request.tags);
-  job.created = std::chrono::system_clock::now();
-  job.problem = std::make_shared<const std::string>(std::move(intake.text));
-  job.key = key;
-  job.predicted_memory = intake.memory();
-  if (request.trace) job.trace = request.trace->id;
-  job.owner = request.identity.name;
-  job.share = request.identity.share;
-  const std::string new_id = job.id;
-  try {
-    std::string id = queue(service, std::move(job));
-    const LogField field("job", id);
-    if (id == new_id) spdlog::info("accepted");
-    return id;
-  } catch (const QueueFull& full) {
-    if (full.share) throw share_used_up(request.identity.name, full.limit);
-    throw unavailable("queue-full", "The queue is full",
-                      std::to_string(full.limit) + " solves are waiting, which is the limit (--queue-limit).",
-                      "5");
-  } catch (const MemoryFull& full) {
-    throw unavailable("memory-full", "The memory is spoken for", full.what(), "10");
-  } catch (const Stopping&) {
-    throw unavailable("stopping", "The service is stopping", "It takes no more solves.", "10");
-  } catch (const KeyReused& reused) {
-    throw key_reused(*key, reused);
-  }
-}
-
-/// The key by which a client may send its request again without solving the problem twice. Throws HttpError
-/// 400.
-std::optional<std::string> idempotency_key(const Request& request) {
-  constexpr std::size_t longest = 255;
-  const std::optional<std::string> key = request.header("Idempotency-Key");
-  const bool visible =
-      !key || std::all_of(key->begin(), key->end(), [](char c) { return c > ' ' && c <= '~'; });
-  if (key && (key->empty() || key->size() > longest || !visible)) {
-    throw HttpError(400, {"bad-idempotency-key", "Bad Idempotency-Key",
-                          "An Idempotency-Key is one of 1 to 255 visible ASCII characters, such as a UUID."});
-  }
-  return key;
 }
 
 /// The reply to a client whose solve was taken in; `waited` if it wants the result, should it be there.
@@ -208,7 +99,9 @@ Response accept(Service& service, const Request& request,
   const std::optional<std::string> key = idempotency_key(request);
   Intake intake = take(service, request);
   require_available(fields, components(intake.request.problem.material));
-  const std::string id = submit(service, request, std::move(intake), key);
+  NewJob job = new_job(service, request, std::move(intake));
+  job.key = key;
+  const std::string id = submit(service, request, std::move(job));
 
   // Where too many wait, nobody is refused for it: the status document says how to go on.
   std::shared_ptr<void> place = wait ? service.waits.take() : nullptr;
@@ -225,10 +118,6 @@ void require_match(const Request& request) {
 }
 
 }  // namespace
-
-bool picks_summary_alone(const Query& query) {
-  return parameter(query, "fields") == "summary";
-}
 
 Response post_solve(Service& service, const Request& request) {
   return accept(service, request, take_in);

@@ -10,8 +10,6 @@ Response post_solve(Service& service, const Request& request);
 /// The same for a problem that must have a study.
 Response post_study(Service& service, const Request& request);
 Response get_solve(Service& service, const Request& request);
-/// The summary stands in the status: where nothing else is picked, no result is read.
-bool picks_summary_alone(const Query& query);
 Response get_result(Service& service, const Request& request);
 Response get_history(Service& service, const Request& request);
 Response delete_solve(Service& service, const Request& request);

@@ -253,7 +253,8 @@ class Listener::Impl {
       };
     };
     if (!message.body.empty()) {
-      Crew& crew = is_long_to_read(message) ? readers_ : takers_;
+      const bool is_long = is_long_to_read(message) || router_.is_long_to_read(message.method, message.path);
+      Crew& crew = is_long ? readers_ : takers_;
       crew.enqueue(reading_of(connection, serve_by(crew)));
     } else {
       Crew& crew = message.refusal ? takers_ : crew_for_reply(message);
@@ -319,6 +320,8 @@ class Listener::Impl {
       std::string head = reply_text(message, response);
       return response.take_connection(connection.give_away(), std::move(head));
     }
+    if (response.parts && message.method != "HEAD")
+      return carry_parts_by_a_carrier(exchange, std::make_shared<const Response>(std::move(response)), true);
     if (response.write_body && message.method != "HEAD") {
       if (&crew == &carriers_) return carry(*exchange, response);
       return carriers_.enqueue(task_of(
@@ -333,6 +336,36 @@ class Listener::Impl {
     const bool sent =
         send_written_reply(*exchange.connection, exchange.message, response, exchange.request.id);
     move_on(exchange.connection, sent && goes_on(exchange.message, response));
+  }
+
+  void carry_parts_by_a_carrier(const std::shared_ptr<Exchange>& exchange,
+                                const std::shared_ptr<const Response>& response, bool first) {
+    carriers_.enqueue(task_of(*exchange->connection,
+                              [this, exchange, response, first] { carry_parts(exchange, response, first); }));
+  }
+
+  /// Those that there are by now. The next ones are waited for without a thread, and without a place in the
+  /// lobby.
+  void carry_parts(const std::shared_ptr<Exchange>& exchange, const std::shared_ptr<const Response>& response,
+                   bool first) {
+    const std::shared_ptr<Connection>& connection = exchange->connection;
+    const Delivery delivery =
+        send_parts(*connection, exchange->message, *response, first, exchange->request.id);
+    if (delivery != Delivery::part || stopping_) {
+      connection->keep_place(lobby_.take_place());
+      return move_on(connection, delivery == Delivery::whole && goes_on(exchange->message, *response));
+    }
+    connection->keep_place(nullptr);
+    // Something may be gone without a word.
+    constexpr std::chrono::minutes look_again{1};
+    waiting_room_.add(
+        connection->socket(), std::chrono::steady_clock::now() + look_again,
+        [response](std::function<void()> ready) { return response->parts->subscribe(std::move(ready)); },
+        [this, exchange, response](bool client_left) {
+          if (!client_left) return carry_parts_by_a_carrier(exchange, response, false);
+          carriers_.enqueue(
+              task_of(*exchange->connection, [this, exchange] { move_on(exchange->connection, false); }));
+        });
   }
 
   void move_on(std::shared_ptr<Connection> connection, bool goes_on) {

@@ -50,7 +50,8 @@ std::string head(const Response& response, Delimiter delimiter, std::uint64_t le
 
 Delimiter delimiter_of(const Message& message, const Response& response) {
   if (response.take_connection) return Delimiter::close;
-  if (response.write_body) return message.version == 10 ? Delimiter::close : Delimiter::chunks;
+  if (response.write_body || response.parts)
+    return message.version == 10 ? Delimiter::close : Delimiter::chunks;
   return response.status == 204 ? Delimiter::none : Delimiter::length;
 }
 
@@ -61,12 +62,12 @@ std::string chunk_line(std::size_t size) {
   return std::string(digits.data(), end) + "\r\n";
 }
 
-/// Sends a body as it is written, the head together with its first piece.
-bool send_pieces(Connection& connection, std::string head, Delimiter delimiter,
-                 const BodyWriter& write_body) {
-  std::string unsent = std::move(head);
+/// Sends a body as it is written, what is unsent together with its first piece, and then what ends it, unless
+/// more follows.
+Delivery send_pieces(Connection& connection, std::string unsent, Delimiter delimiter,
+                     const BodyWriter& write_body, const std::function<bool()>& is_complete) {
   const bool chunked = delimiter == Delimiter::chunks;
-  const bool complete = write_body([&](std::string_view piece) {
+  const bool written = write_body([&](std::string_view piece) {
     if (piece.empty()) return true;
     if (chunked) unsent += chunk_line(piece.size());
     unsent += piece;
@@ -75,10 +76,23 @@ bool send_pieces(Connection& connection, std::string head, Delimiter delimiter,
     unsent.clear();
     return taken;
   });
+  const bool complete = written && is_complete();
   if (complete && chunked) unsent += "0\r\n\r\n";
-  if (complete && connection.send(unsent)) return true;
+  if (written && connection.send(unsent)) return complete ? Delivery::whole : Delivery::part;
   spdlog::info("the client left before the reply ended");
-  return false;
+  return Delivery::failed;
+}
+
+/// What `send` does, and the reason in the log if that throws.
+template <typename Send>
+Delivery broken_off_on_failure(const std::string& log_id, const Send& send) {
+  const LogField request("request", log_id);
+  try {
+    return send();
+  } catch (const std::exception& error) {
+    spdlog::error("the reply broke off: {}", error.what());
+    return Delivery::failed;
+  }
 }
 
 }  // namespace
@@ -97,14 +111,21 @@ std::string reply_text(const Message& message, const Response& response) {
 bool send_written_reply(Connection& connection, const Message& message, const Response& response,
                         const std::string& log_id) {
   connection.begin_reply(response.in_the_way);
-  const LogField request("request", log_id);
-  try {
-    return send_pieces(connection, reply_text(message, response), delimiter_of(message, response),
-                       response.write_body);
-  } catch (const std::exception& error) {
-    spdlog::error("the reply broke off: {}", error.what());
-    return false;
-  }
+  return broken_off_on_failure(log_id, [&] {
+           return send_pieces(connection, reply_text(message, response), delimiter_of(message, response),
+                              response.write_body, [] { return true; });
+         }) == Delivery::whole;
+}
+
+Delivery send_parts(Connection& connection, const Message& message, const Response& response, bool first,
+                    const std::string& log_id) {
+  connection.begin_reply(response.in_the_way);
+  PartSource& parts = *response.parts;
+  return broken_off_on_failure(log_id, [&] {
+    return send_pieces(
+        connection, first ? reply_text(message, response) : "", delimiter_of(message, response),
+        [&](const PieceSink& sink) { return parts.write(sink); }, [&] { return parts.is_complete(); });
+  });
 }
 
 }  // namespace signorini::server

@@ -21,4 +21,9 @@ std::string reply_text(const Message& message, const Response& response);
 bool send_written_reply(Connection& connection, const Message& message, const Response& response,
                         const std::string& log_id);
 
+/// Sends those parts of a reply that there are by now, behind its head if they are the first; the end of the
+/// reply too if no more will follow.
+Delivery send_parts(Connection& connection, const Message& message, const Response& response, bool first,
+                    const std::string& log_id);
+
 }  // namespace signorini::server

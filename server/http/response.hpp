@@ -17,6 +17,20 @@ using PieceSink = std::function<bool(std::string_view piece)>;
 /// anew.
 using BodyWriter = std::function<bool(const PieceSink& sink)>;
 
+/// A body that comes to be over time, in parts between which no thread waits. Used by one thread at a time.
+class PartSource {
+ public:
+  virtual ~PartSource() = default;
+
+  /// Writes what there is by now; false if the sink ended it.
+  virtual bool write(const PieceSink& sink) = 0;
+  /// Whether nothing will follow.
+  virtual bool is_complete() const = 0;
+  /// Arranges that `ready` is called, by any thread, as soon as there may be more than was written, while
+  /// what is returned lives.
+  virtual std::shared_ptr<void> subscribe(std::function<void()> ready) = 0;
+};
+
 struct LaterReply;
 
 /// One reply: a body that is there, one that is written while it is sent, or one that outlives the exchange;
@@ -27,6 +41,7 @@ struct Response {
   std::string body;
   const std::string* compressed = nullptr;  ///< the body by gzip, if it is always the same
   BodyWriter write_body;
+  std::shared_ptr<PartSource> parts;
   std::function<bool()> in_the_way;  ///< whether others wait for what it holds until it is sent; may be empty
   /// Sends the reply itself, of which the head is there.
   std::function<void(int socket, std::string head)> take_connection;

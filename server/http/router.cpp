@@ -100,6 +100,12 @@ bool Router::is_long(std::string_view method, std::string_view path, const Query
   });
 }
 
+bool Router::is_long_to_read(std::string_view method, std::string_view path) const {
+  return std::ranges::any_of(routes_, [&](const Route& route) {
+    return route.is_long_to_read && route.method == method && match(route.pattern, path);
+  });
+}
+
 Router::Found Router::find(Request& request) const {
   const std::string method = request.method == "HEAD" ? "GET" : request.method;
   Found found;

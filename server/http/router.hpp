@@ -31,6 +31,8 @@ struct Route {
   /// Throws HttpError for a body that the handler would not take, by what the head says of it. Empty: nothing
   /// is asked.
   void (*judge_body)(const Request& request) = nullptr;
+  /// Whether it may take long to read what a body brings, however short that is.
+  bool is_long_to_read = false;
   /// Answers browsers, which prefer `text/html` to all media types of the reply, by a page. It holds nothing
   /// of any client, so that it is for everybody. Empty: there is none.
   Handler page = nullptr;
@@ -58,6 +60,8 @@ class Router {
   bool is_for_probes(std::string_view path) const;
   /// Whether the reply may be long.
   bool is_long(std::string_view method, std::string_view path, const Query& query) const;
+  /// Whether it may take long to read what a request brings, however short its body is.
+  bool is_long_to_read(std::string_view method, std::string_view path) const;
 
   /// Tells browsers which pages may read the reply.
   void mark(const Request& request, Response& response) const { access_.cors.mark(request, response); }

@@ -68,6 +68,7 @@ struct NewJob {
   std::string trace;               ///< id of the trace of the request (W3C Trace Context); empty: none
   std::string owner;               ///< the name of who sent it; empty where there are no names
   Share share = {};                ///< of the owner
+  std::string batch = {};          ///< id of the batch that it is of; empty: none
 };
 
 /// One solve from its acceptance on, without the texts and the fields that belong to it.
@@ -78,6 +79,7 @@ struct Job {
   std::vector<std::string> tags;
   std::string trace;  ///< as in NewJob
   std::string owner;  ///< as in NewJob
+  std::string batch;  ///< as in NewJob
   Time created;
   std::optional<Time> started;
   std::optional<Time> finished;

@@ -15,8 +15,9 @@ const std::string first_columns =
     "owner, ended, damaged";
 
 /// One without what came later is sealed as it was before that.
-const std::string seal =
-    "CASE WHEN tags = '' THEN row_seal(" + first_columns + ") ELSE row_seal(" + first_columns + ", tags) END";
+const std::string seal = "CASE WHEN batch <> '' THEN row_seal(" + first_columns +
+                         ", tags, batch) WHEN tags <> '' THEN row_seal(" + first_columns +
+                         ", tags) ELSE row_seal(" + first_columns + ") END";
 
 const std::string what_is_a_row = "entry in the list of solves";
 
@@ -43,15 +44,15 @@ std::vector<std::string> unpack_list(const std::string& column) {
 const std::string is_intact = "seal IS NULL OR seal = (" + seal + ")";
 
 const std::string job_columns =
-    "id, status, title, created, started, finished, verdict, trace, owner, tags, " + is_intact;
+    "id, status, title, created, started, finished, verdict, trace, owner, tags, batch, " + is_intact;
 
 void seal_changes(SQLite::Database& database) {
   const std::string renew = "BEGIN UPDATE jobs SET seal = (" + seal + ") WHERE id = NEW.id; END;";
-  database.exec(
-      "CREATE TEMP TRIGGER seal_new AFTER INSERT ON main.jobs " + renew +
-      "CREATE TEMP TRIGGER seal_changed AFTER UPDATE OF status, title, created, started, finished, "
-      "attempt, given_back, cancel_asked, verdict, bytes, trace, owner, ended, damaged, tags ON main.jobs " +
-      renew);
+  database.exec("CREATE TEMP TRIGGER seal_new AFTER INSERT ON main.jobs " + renew +
+                "CREATE TEMP TRIGGER seal_changed AFTER UPDATE OF status, title, created, started, finished, "
+                "attempt, given_back, cancel_asked, verdict, bytes, trace, owner, ended, damaged, tags, "
+                "batch ON main.jobs " +
+                renew);
 }
 
 Job job_of(const SQLite::Statement& row) {
@@ -59,13 +60,14 @@ Job job_of(const SQLite::Statement& row) {
   job.id = row.getColumn(0).getString();
   job.owner = row.getColumn(8).getString();
   const std::optional<JobStatus> status = job_status(row.getColumn(1).getString());
-  if (!status || row.getColumn(10).getInt() == 0) return damaged_job(job.id, job.owner);
+  if (!status || row.getColumn(11).getInt() == 0) return damaged_job(job.id, job.owner);
   job.status = *status;
   job.title = row.getColumn(2).getString();
   job.created = time_of(row.getColumn(3)).value_or(Time());
   job.started = time_of(row.getColumn(4));
   job.finished = time_of(row.getColumn(5));
   job.trace = row.getColumn(7).getString();
+  job.batch = row.getColumn(10).getString();
   try {
     job.tags = unpack_list(row.getColumn(9).getString());
     if (!row.isColumnNull(6)) job.verdict = unpack_verdict(bytes_of(row.getColumn(6)));
@@ -73,6 +75,26 @@ Job job_of(const SQLite::Statement& row) {
     return damaged_job(job.id, job.owner);
   }
   return job;
+}
+
+const std::string batch_columns = "id, owner, created, content";
+
+std::optional<Batch> batch_of(const SQLite::Statement& row) try {
+  Batch batch;
+  batch.id = row.getColumn(0).getString();
+  batch.owner = row.getColumn(1).getString();
+  batch.created = time_of(row.getColumn(2)).value_or(Time());
+  const auto content = nlohmann::json::parse(unpack_text(bytes_of(row.getColumn(3))));
+  content.at("title").get_to(batch.title);
+  content.at("tags").get_to(batch.tags);
+  content.at("jobs").get_to(batch.jobs);
+  return batch;
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+std::string pack_content(const Batch& batch) {
+  return pack_text(nlohmann::json{{"title", batch.title}, {"tags", batch.tags}, {"jobs", batch.jobs}}.dump());
 }
 
 std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/batch.hpp"
 #include "server/jobs/database.hpp"
 
 namespace signorini::server {
@@ -16,7 +17,7 @@ std::vector<std::string> unpack_list(const std::string& column);
 
 /// The columns that job_of() reads.
 extern const std::string job_columns;
-constexpr int job_column_count = 11;
+constexpr int job_column_count = 12;
 
 /// An expression: whether the row of `jobs` is as it was written.
 extern const std::string is_intact;
@@ -26,6 +27,13 @@ void seal_changes(SQLite::Database& database);
 
 /// One whose row is not intact is `failed`, and nothing but its id, status and owner is told of it.
 Job job_of(const SQLite::Statement& row);
+
+/// What batch_of() reads of `batches`.
+extern const std::string batch_columns;
+/// Nothing if it is damaged.
+std::optional<Batch> batch_of(const SQLite::Statement& row);
+/// What of it is one value.
+std::string pack_content(const Batch& batch);
 
 /// The problem as it was sent; null if it is missing or damaged.
 std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id);

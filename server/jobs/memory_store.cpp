@@ -25,9 +25,33 @@ std::string MemoryStore::add(NewJob job) {
   if (job.key) {
     if (auto earlier = job_with_key({job.owner, *job.key}, *job.problem)) return *std::move(earlier);
   }
-  if (queue_.size() >= limits_.queue) throw QueueFull(limits_.queue);
-  if (job.share.queue && queued(job.owner) >= *job.share.queue) throw QueueFull(*job.share.queue, true);
+  require_places(1, job.owner, job.share);
   if (job.key) keys_[{job.owner, *job.key}] = job.id;
+  const std::string id = job.id;
+  enqueue(std::move(job));
+  return id;
+}
+
+Batch MemoryStore::add(NewBatch batch) {
+  const std::lock_guard lock(mutex_);
+  const std::string& owner = batch.batch.owner;
+  if (batch.key) {
+    if (auto earlier = batch_with_key({owner, *batch.key}, batch.digest)) return *std::move(earlier);
+  }
+  require_places(batch.jobs.size(), owner, batch.jobs.front().share);
+  if (batch.key) keys_[{owner, *batch.key}] = batch.batch.id;
+  batches_[batch.batch.id] = {batch.batch, batch.key, batch.digest, batch.jobs.size()};
+  for (NewJob& job : batch.jobs) enqueue(std::move(job));
+  return batch.batch;
+}
+
+/// Throws QueueFull if not so many jobs more may wait.
+void MemoryStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) const {
+  if (queue_.size() + jobs > limits_.queue) throw QueueFull(limits_.queue);
+  if (share.queue && queued(owner) + jobs > *share.queue) throw QueueFull(*share.queue, true);
+}
+
+void MemoryStore::enqueue(NewJob job) {
   queue_.push_back(job.id);
   Entry& entry = entries_[job.id];
   entry.job.id = std::move(job.id);
@@ -35,10 +59,10 @@ std::string MemoryStore::add(NewJob job) {
   entry.job.tags = std::move(job.tags);
   entry.job.trace = std::move(job.trace);
   entry.job.owner = std::move(job.owner);
+  entry.job.batch = std::move(job.batch);
   entry.job.created = job.created;
   entry.result.problem = std::move(job.problem);
   entry.key = std::move(job.key);
-  return entry.job.id;
 }
 
 std::optional<std::string> MemoryStore::earlier(const std::string& owner, const std::string& key,
@@ -50,8 +74,24 @@ std::optional<std::string> MemoryStore::earlier(const std::string& owner, const 
 std::optional<std::string> MemoryStore::job_with_key(const Key& key, const std::string& problem) const {
   const auto found = keys_.find(key);
   if (found == keys_.end()) return std::nullopt;
+  if (batches_.contains(found->second)) throw KeyReused(found->second, true);
   if (*entries_.at(found->second).result.problem != problem) throw KeyReused(found->second);
   return found->second;
+}
+
+std::optional<Batch> MemoryStore::earlier_batch(const std::string& owner, const std::string& key,
+                                                const std::string& digest) {
+  const std::lock_guard lock(mutex_);
+  return batch_with_key({owner, key}, digest);
+}
+
+std::optional<Batch> MemoryStore::batch_with_key(const Key& key, const std::string& digest) const {
+  const auto found = keys_.find(key);
+  if (found == keys_.end()) return std::nullopt;
+  const auto entry = batches_.find(found->second);
+  if (entry == batches_.end()) throw KeyReused(found->second);
+  if (entry->second.digest != digest) throw KeyReused(found->second, true);
+  return entry->second.batch;
 }
 
 std::size_t MemoryStore::queued(const std::string& owner) const {
@@ -166,6 +206,45 @@ JobCounts MemoryStore::count() const {
   return counts;
 }
 
+std::optional<Batch> MemoryStore::find_batch(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = batches_.find(id);
+  return found == batches_.end() ? std::nullopt : std::optional(found->second.batch);
+}
+
+JobCounts MemoryStore::count_of_batch(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  JobCounts counts;
+  const auto found = batches_.find(id);
+  if (found == batches_.end()) return counts;
+  for (const std::string& job : found->second.batch.jobs) {
+    const auto entry = entries_.find(job);
+    if (entry != entries_.end()) ++counts[entry->second.job.status];
+  }
+  return counts;
+}
+
+BatchEnds MemoryStore::ends_of_batch(const std::string& id, std::int64_t since) const {
+  const std::lock_guard lock(mutex_);
+  BatchEnds ends;
+  ends.latest = since;
+  const auto found = batches_.find(id);
+  if (found == batches_.end()) return ends;
+  std::vector<std::pair<std::int64_t, std::string>> ended;
+  for (const std::string& job : found->second.batch.jobs) {
+    const auto entry = entries_.find(job);
+    if (entry == entries_.end()) continue;
+    if (!has_ended(entry->second.job.status))
+      ends.all = false;
+    else if (entry->second.ended >= since)
+      ended.emplace_back(entry->second.ended, job);
+  }
+  std::ranges::stable_sort(ended, {}, &std::pair<std::int64_t, std::string>::first);
+  for (auto& [time, job] : ended) ends.jobs.push_back(std::move(job));
+  if (!ended.empty()) ends.latest = ended.back().first;
+  return ends;
+}
+
 std::optional<JobResult> MemoryStore::result(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(id);
@@ -217,6 +296,10 @@ void MemoryStore::remove(const std::string& id, Removed& removed) {
   const Entry& entry = removed.back().mapped();
   ended_bytes_ -= entry.bytes;
   if (entry.key) keys_.erase({entry.job.owner, *entry.key});
+  const auto batch = batches_.find(entry.job.batch);
+  if (batch == batches_.end() || --batch->second.jobs_left > 0) return;
+  if (batch->second.key) keys_.erase({entry.job.owner, *batch->second.key});
+  batches_.erase(batch);
 }
 
 }  // namespace signorini::server

@@ -17,6 +17,9 @@ class MemoryStore : public JobStore {
   std::string add(NewJob job) override;
   std::optional<std::string> earlier(const std::string& owner, const std::string& key,
                                      const std::string& problem) override;
+  Batch add(NewBatch batch) override;
+  std::optional<Batch> earlier_batch(const std::string& owner, const std::string& key,
+                                     const std::string& digest) override;
   std::optional<Claim> claim() override;
   bool finish(const Claim& claim, const Ending& ending) override;
   bool give_back(const Claim& claim) override;
@@ -28,6 +31,9 @@ class MemoryStore : public JobStore {
   JobPage list(const ListQuery& query) const override;
   std::vector<std::string> ids(const ListQuery& query) const override;
   JobCounts count() const override;
+  std::optional<Batch> find_batch(const std::string& id) const override;
+  JobCounts count_of_batch(const std::string& id) const override;
+  BatchEnds ends_of_batch(const std::string& id, std::int64_t since) const override;
   std::optional<JobResult> result(const std::string& id) override;
   std::size_t result_memory(const std::string&) const override { return 0; }
   std::size_t damaged() const override { return 0; }
@@ -46,12 +52,22 @@ class MemoryStore : public JobStore {
   };
   using Entries = std::map<std::string, Entry>;
 
+  struct BatchEntry {
+    Batch batch;
+    std::optional<std::string> key;
+    std::string digest;
+    std::size_t jobs_left = 0;
+  };
+
   /// Jobs that no longer stand in the map; their memory is freed after the lock is.
   using Removed = std::vector<Entries::node_type>;
 
   using Key = std::pair<std::string, std::string>;  ///< of an owner
 
   std::optional<std::string> job_with_key(const Key& key, const std::string& problem) const;
+  std::optional<Batch> batch_with_key(const Key& key, const std::string& digest) const;
+  void require_places(std::size_t jobs, const std::string& owner, const Share& share) const;
+  void enqueue(NewJob job);
   std::size_t queued(const std::string& owner) const;
   Entry* running(const Claim& claim);
   void end(Entry& entry, const Ending& ending, Removed& removed);
@@ -66,7 +82,8 @@ class MemoryStore : public JobStore {
   Entries entries_;                  ///< by id, which is by age
   std::deque<std::string> queue_;    ///< ids, next first
   std::deque<std::string> ended_;    ///< ids in the order in which they ended
-  std::map<Key, std::string> keys_;  ///< the id of the job with this key
+  std::map<Key, std::string> keys_;  ///< the id of the job or batch with this key
+  std::map<std::string, BatchEntry> batches_;
   RetentionClock clock_;
   std::size_t ended_bytes_ = 0;
 };

@@ -135,6 +135,7 @@ class Rows {
     for (const char* table : {"results", "idempotency_keys"})
       database_.exec(std::string("DELETE FROM ") + table + " WHERE job NOT IN (SELECT id FROM jobs)");
     renew_tags();
+    remove_lost_batches();
     return damage_;
   }
 
@@ -155,6 +156,21 @@ class Rows {
                id, retention_)
           .exec();
       fail(id, "entry in the list of solves");
+    }
+  }
+
+  /// Of which there is no job, or not what was written. The jobs are what they were.
+  void remove_lost_batches() {
+    database_.exec("DELETE FROM batches WHERE id NOT IN (SELECT batch FROM jobs)");
+    std::vector<std::string> damaged;
+    {
+      auto row = prepared(database_, "SELECT " + batch_columns + " FROM batches");
+      while (row.executeStep())
+        if (!batch_of(row)) damaged.push_back(row.getColumn(0).getString());
+    }
+    for (const std::string& id : damaged) {
+      prepared(database_, "DELETE FROM batches WHERE id = ?", id).exec();
+      damage_.push_back("batch " + id + " is not what was written; its solves are there one by one");
     }
   }
 

@@ -304,6 +304,7 @@ std::size_t salvage(const std::filesystem::path& file, SQLite::Database& whole) 
   SQLite::Statement job(whole, "INSERT OR IGNORE INTO jobs VALUES (" + question_marks(columns) + ")");
   SQLite::Statement problem(whole, "INSERT OR IGNORE INTO problems VALUES (?, ?)");
   SQLite::Statement piece(whole, "INSERT OR IGNORE INTO results VALUES (?, ?, ?)");
+  SQLite::Statement batch(whole, "INSERT OR IGNORE INTO batches VALUES (?, ?, ?, ?, ?, ?)");
   SQLite::Statement key(whole, "INSERT OR IGNORE INTO idempotency_keys VALUES (?, ?, ?)");
   for (const std::uint32_t number : pages.newest_first()) {
     for_each_row(pages, number, [&](const Row& row, bool of_table) {
@@ -311,6 +312,7 @@ std::size_t salvage(const std::filesystem::path& file, SQLite::Database& whole) 
       if (!of_table && row.size() >= sealed_columns) insert(job, with_defaults(row, columns));
       if (of_table && row.size() == 2 && row[1].kind == Value::Kind::blob) insert(problem, row);
       if (of_table && row.size() == 3 && row[2].kind == Value::Kind::blob) insert(piece, row);
+      if (!of_table && row.size() == 6 && row[5].kind == Value::Kind::blob) insert(batch, row);
       if (!of_table && row.size() == 3 && is_text(row[1]) && is_text(row[2])) insert(key, row);
     });
   }

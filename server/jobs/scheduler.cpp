@@ -91,12 +91,41 @@ std::string Scheduler::submit(NewJob job) {
     throw;
   }
   if (id != new_id) memory_.release(new_id);
+  announce_submission();
+  return id;
+}
+
+Batch Scheduler::submit(NewBatch batch) {
+  const std::string& owner = batch.batch.owner;
+  if (batch.key) {
+    if (auto earlier = store_.earlier_batch(owner, *batch.key, batch.digest)) return *std::move(earlier);
+  }
+  const std::shared_lock admitted(admission_);
+  if (!accepting()) throw Stopping();
+  const std::vector<std::string> jobs = batch.batch.jobs;
+  const auto release = [&] {
+    for (const std::string& id : jobs) memory_.release(id);
+  };
+  try {
+    for (const NewJob& job : batch.jobs)
+      memory_.admit(job.id, job.predicted_memory, job.owner, job.share.memory);
+    const std::string new_id = batch.batch.id;
+    Batch accepted = store_.add(std::move(batch));
+    if (accepted.id != new_id) release();
+    announce_submission();
+    return accepted;
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+void Scheduler::announce_submission() {
   {
     const std::lock_guard lock(mutex_);
     ++submissions_;
   }
   queued_.notify_all();
-  return id;
 }
 
 std::shared_ptr<const Watch> Scheduler::watch(const std::string& id) {
@@ -133,7 +162,10 @@ Dismissal Scheduler::dismiss(const std::string& id) {
 std::optional<Dismissal> Scheduler::try_to_cancel(const std::string& id) {
   const Cancellation cancellation = store_.cancel(id);
   if (cancellation == Cancellation::ended) {
-    announce_end(id);
+    // It may be removed already; then nobody waits for it but those who look by themselves.
+    Job ended = store_.find(id).value_or(Job());
+    ended.id = id;
+    announce_end(ended);
     const LogField job("job", id);
     spdlog::info("cancelled while queued");
     return Dismissal::cancelled;
@@ -226,7 +258,7 @@ void Scheduler::run_to_end(const Running& running) {
   const bool small = is_small(ending);
   if (small) give_place();
   keep(claim, ending);
-  announce_end(claim.job.id);
+  announce_end(claim.job);
   if (!small) give_place();
 }
 
@@ -325,13 +357,13 @@ bool Scheduler::pause() {
   return !queued_.wait_for(lock, retry_time, [&] { return stopping_; });
 }
 
-void Scheduler::announce_end(const std::string& id) {
-  memory_.release(id);
-  {
-    const std::lock_guard lock(mutex_);
-    running_.erase(id);
-    if (const auto watch = watch_of(id)) watch->end();
-    watches_.erase(id);
+void Scheduler::announce_end(const Job& job) {
+  memory_.release(job.id);
+  const std::lock_guard lock(mutex_);
+  running_.erase(job.id);
+  for (const std::string& watched : {job.id, job.batch}) {
+    if (const auto watch = watch_of(watched)) watch->end();
+    watches_.erase(watched);
   }
 }
 
@@ -359,7 +391,7 @@ void Scheduler::cancel_all_queued() {
     page = store_.list(queued);
     for (const Job& job : page.jobs) {
       if (store_.cancel(job.id) != Cancellation::ended) continue;
-      announce_end(job.id);
+      announce_end(job);
       const LogField field("job", job.id);
       spdlog::info("cancelled while queued");
     }

@@ -48,7 +48,11 @@ class Scheduler {
   /// once drain() was called.
   std::string submit(NewJob job);
 
-  /// What happens to a job from now on. One that has ended is never `over`: ask the store after this call.
+  /// The same of a batch, as a whole.
+  Batch submit(NewBatch batch);
+
+  /// What happens to a job from now on. One that has ended is never `over`: ask the store after this call. Of
+  /// a batch: it is `over` as soon as one of its jobs has ended.
   std::shared_ptr<const Watch> watch(const std::string& id);
 
   /// Cancels a job that has not ended: a running one ends at its next check.
@@ -94,7 +98,8 @@ class Scheduler {
   bool try_to_keep(const Claim& claim, const Ending& ending);
   void keep(const Claim& claim, const Ending& ending);
   bool pause();
-  void announce_end(const std::string& id);
+  void announce_end(const Job& job);
+  void announce_submission();
   std::shared_ptr<Watch> watch_of(const std::string& id) const;
   std::optional<Dismissal> try_to_cancel(const std::string& id);
   bool cancel_live(const std::string& id);
@@ -118,7 +123,7 @@ class Scheduler {
   int places_;   ///< solves that may begin
   std::uint64_t submissions_ = 0;
   std::map<std::string, Running> running_;               ///< by the id of the job
-  std::map<std::string, std::weak_ptr<Watch>> watches_;  ///< by the id of the job; shared by all who watch it
+  std::map<std::string, std::weak_ptr<Watch>> watches_;  ///< by the id of the job or batch; shared by all
 
   std::mutex joining_;
   std::vector<std::thread> threads_;

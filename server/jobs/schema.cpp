@@ -99,6 +99,24 @@ END;
 CREATE TRIGGER tag_none AFTER UPDATE OF tags ON jobs BEGIN
   DELETE FROM job_tags WHERE job = NEW.id;
 END;
+)sql",
+    R"sql(
+ALTER TABLE jobs ADD COLUMN batch TEXT NOT NULL DEFAULT '';      -- that it is of; empty: none
+CREATE INDEX jobs_by_batch ON jobs (batch, ended, status) WHERE batch <> '';
+
+CREATE TABLE batches (
+  id TEXT PRIMARY KEY,
+  owner TEXT NOT NULL,
+  created INTEGER NOT NULL,
+  key TEXT,                                 -- of idempotency
+  digest TEXT NOT NULL,                     -- of the request
+  content BLOB NOT NULL                     -- stored_form.hpp: title, tags, ids of its jobs
+) STRICT, WITHOUT ROWID;
+CREATE INDEX batches_by_key ON batches (owner, key, created) WHERE key IS NOT NULL;
+
+CREATE TRIGGER batch_gone AFTER DELETE ON jobs WHEN OLD.batch <> '' BEGIN
+  DELETE FROM batches WHERE id = OLD.batch AND NOT EXISTS (SELECT 1 FROM jobs WHERE batch = OLD.batch);
+END;
 )sql"};
 
 }  // namespace

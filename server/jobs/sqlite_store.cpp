@@ -114,6 +114,16 @@ SQLite::Statement selection(const SQLite::Database& database, const std::string&
   return row;
 }
 
+JobCounts counts_in(SQLite::Statement& row) {
+  JobCounts counts;
+  while (row.executeStep()) {
+    // One that no job can have is told of as failed.
+    const auto status = job_status(row.getColumn(0).getString()).value_or(JobStatus::failed);
+    counts[status] += static_cast<std::size_t>(row.getColumn(1).getInt64());
+  }
+  return counts;
+}
+
 Ending attempts_used_up() {
   Ending ending;
   ending.status = JobStatus::failed;
@@ -202,20 +212,52 @@ std::string SqliteStore::add(NewJob job) {
     if (job.key) {
       if (const auto earlier = job_with_key(writer_, job.owner, *job.key, *job.problem)) return *earlier;
     }
-    if (queued("", job.owner) >= limits_.queue) throw QueueFull(limits_.queue);
-    if (job.share.queue && queued(" AND owner = ?", job.owner) >= *job.share.queue)
-      throw QueueFull(*job.share.queue, true);
-    prepared(writer_,
-             "INSERT INTO jobs (id, status, title, created, bytes, trace, owner, tags) "
-             "VALUES (?, 'queued', ?, ?, ?, ?, ?, ?)",
-             job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed.size()),
-             job.trace, job.owner, pack_list(job.tags))
-        .exec();
-    prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed}).exec();
-    if (job.key)
-      prepared(writer_, "INSERT INTO idempotency_keys VALUES (?, ?, ?)", job.owner, *job.key, job.id).exec();
+    require_places(1, job.owner, job.share);
+    insert(job, packed);
     return job.id;
   });
+}
+
+Batch SqliteStore::add(NewBatch batch) {
+  require_room();
+  std::vector<std::string> packed;
+  std::size_t bytes = 0;
+  for (const NewJob& job : batch.jobs) bytes += packed.emplace_back(pack_text(*job.problem)).size();
+  require_growth(bytes);
+  const std::string content = pack_content(batch.batch);
+  return write([&]() -> Batch {
+    const auto& [id, title, tags, owner, created, jobs] = batch.batch;
+    if (batch.key) {
+      if (auto earlier = batch_with_key(writer_, owner, *batch.key, batch.digest)) return *std::move(earlier);
+    }
+    require_places(batch.jobs.size(), owner, batch.jobs.front().share);
+    auto row = prepared(writer_, "INSERT INTO batches VALUES (?, ?, ?, ?, ?, ?)", id, owner,
+                        milliseconds(created), batch.key.value_or(""), batch.digest, Blob{content});
+    if (!batch.key) row.bind(4);
+    row.exec();
+    for (std::size_t i = 0; i < batch.jobs.size(); ++i) insert(batch.jobs[i], packed[i]);
+    return batch.batch;
+  });
+}
+
+/// Within a step: throws QueueFull if not so many jobs more may wait.
+void SqliteStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) {
+  if (queued("", owner) + jobs > limits_.queue) throw QueueFull(limits_.queue);
+  if (share.queue && queued(" AND owner = ?", owner) + jobs > *share.queue)
+    throw QueueFull(*share.queue, true);
+}
+
+/// Within a step.
+void SqliteStore::insert(const NewJob& job, const std::string& packed_problem) {
+  prepared(writer_,
+           "INSERT INTO jobs (id, status, title, created, bytes, trace, owner, tags, batch) "
+           "VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?)",
+           job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed_problem.size()),
+           job.trace, job.owner, pack_list(job.tags), job.batch)
+      .exec();
+  prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed_problem}).exec();
+  if (job.key)
+    prepared(writer_, "INSERT INTO idempotency_keys VALUES (?, ?, ?)", job.owner, *job.key, job.id).exec();
 }
 
 /// Jobs that wait, under a further condition on their rows, of which the owner is the value.
@@ -234,12 +276,30 @@ std::optional<std::string> SqliteStore::earlier(const std::string& owner, const 
 std::optional<std::string> SqliteStore::job_with_key(const SQLite::Database& database,
                                                      const std::string& owner, const std::string& key,
                                                      const std::string& problem) const {
+  auto batch = prepared(database, "SELECT id FROM batches WHERE owner = ? AND key = ?", owner, key);
+  if (batch.executeStep()) throw KeyReused(batch.getColumn(0).getString(), true);
   auto row = prepared(database, "SELECT job FROM idempotency_keys WHERE owner = ? AND key = ?", owner, key);
   if (!row.executeStep()) return std::nullopt;
   const std::string id = row.getColumn(0).getString();
   const auto known = problem_of(database, id);
   if (known && *known != problem) throw KeyReused(id);
   return id;
+}
+
+std::optional<Batch> SqliteStore::earlier_batch(const std::string& owner, const std::string& key,
+                                                const std::string& digest) {
+  return read([&] { return batch_with_key(reader_, owner, key, digest); });
+}
+
+std::optional<Batch> SqliteStore::batch_with_key(const SQLite::Database& database, const std::string& owner,
+                                                 const std::string& key, const std::string& digest) const {
+  auto job = prepared(database, "SELECT job FROM idempotency_keys WHERE owner = ? AND key = ?", owner, key);
+  if (job.executeStep()) throw KeyReused(job.getColumn(0).getString());
+  auto row = prepared(
+      database, "SELECT " + batch_columns + ", digest FROM batches WHERE owner = ? AND key = ?", owner, key);
+  if (!row.executeStep()) return std::nullopt;
+  if (row.getColumn(4).getString() != digest) throw KeyReused(row.getColumn(0).getString(), true);
+  return batch_of(row);
 }
 
 std::optional<Claim> SqliteStore::claim() {
@@ -505,14 +565,40 @@ std::vector<std::string> SqliteStore::ids(const ListQuery& query) const {
 
 JobCounts SqliteStore::count() const {
   return read([&] {
-    JobCounts counts;
     auto row = prepared(reader_, "SELECT status, count(*) FROM jobs GROUP BY status");
+    return counts_in(row);
+  });
+}
+
+std::optional<Batch> SqliteStore::find_batch(const std::string& id) const {
+  return read([&]() -> std::optional<Batch> {
+    auto row = prepared(reader_, "SELECT " + batch_columns + " FROM batches WHERE id = ?", id);
+    if (!row.executeStep()) return std::nullopt;
+    return batch_of(row);
+  });
+}
+
+JobCounts SqliteStore::count_of_batch(const std::string& id) const {
+  return read([&] {
+    auto row = prepared(
+        reader_, "SELECT status, count(*) FROM jobs WHERE batch <> '' AND batch = ? GROUP BY status", id);
+    return counts_in(row);
+  });
+}
+
+BatchEnds SqliteStore::ends_of_batch(const std::string& id, std::int64_t since) const {
+  const std::string of_batch = " FROM jobs WHERE batch <> '' AND batch = ? AND ended ";
+  return read([&] {
+    BatchEnds ends;
+    ends.latest = since;
+    // Asked first: what ends in between is then among those that follow.
+    ends.all = !prepared(reader_, "SELECT 1" + of_batch + "IS NULL LIMIT 1", id).executeStep();
+    auto row = prepared(reader_, "SELECT id, ended" + of_batch + ">= ? ORDER BY ended", id, since);
     while (row.executeStep()) {
-      // One that no job can have is told of as failed.
-      const auto status = job_status(row.getColumn(0).getString()).value_or(JobStatus::failed);
-      counts[status] += static_cast<std::size_t>(row.getColumn(1).getInt64());
+      ends.jobs.push_back(row.getColumn(0).getString());
+      ends.latest = row.getColumn(1).getInt64();
     }
-    return counts;
+    return ends;
   });
 }
 

@@ -28,6 +28,9 @@ class SqliteStore : public JobStore {
   std::string add(NewJob job) override;
   std::optional<std::string> earlier(const std::string& owner, const std::string& key,
                                      const std::string& problem) override;
+  Batch add(NewBatch batch) override;
+  std::optional<Batch> earlier_batch(const std::string& owner, const std::string& key,
+                                     const std::string& digest) override;
   std::optional<Claim> claim() override;
   bool finish(const Claim& claim, const Ending& ending) override;
   bool give_back(const Claim& claim) override;
@@ -39,6 +42,9 @@ class SqliteStore : public JobStore {
   JobPage list(const ListQuery& query) const override;
   std::vector<std::string> ids(const ListQuery& query) const override;
   JobCounts count() const override;
+  std::optional<Batch> find_batch(const std::string& id) const override;
+  JobCounts count_of_batch(const std::string& id) const override;
+  BatchEnds ends_of_batch(const std::string& id, std::int64_t since) const override;
   std::optional<JobResult> result(const std::string& id) override;
   std::size_t result_memory(const std::string& id) const override;
   std::size_t damaged() const override;
@@ -60,6 +66,10 @@ class SqliteStore : public JobStore {
   void require_growth(std::size_t bytes) const;
   std::optional<std::string> job_with_key(const SQLite::Database& database, const std::string& owner,
                                           const std::string& key, const std::string& problem) const;
+  std::optional<Batch> batch_with_key(const SQLite::Database& database, const std::string& owner,
+                                      const std::string& key, const std::string& digest) const;
+  void require_places(std::size_t jobs, const std::string& owner, const Share& share);
+  void insert(const NewJob& job, const std::string& packed_problem);
   std::size_t queued(const std::string& condition, const std::string& owner);
   bool end(const std::string& id, const std::string& condition, const Ending& ending,
            const std::string& findings);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/batch.hpp"
 #include "server/jobs/job.hpp"
 
 namespace signorini::server {
@@ -23,13 +24,16 @@ class QueueFull : public std::runtime_error {
   bool share;  ///< it is the share of one owner that is used up
 };
 
-/// The idempotency key came with another problem before.
+/// The idempotency key came with something else before.
 class KeyReused : public std::runtime_error {
  public:
-  explicit KeyReused(std::string earlier_job)
-      : std::runtime_error("the idempotency key belongs to another problem"), job(std::move(earlier_job)) {}
+  explicit KeyReused(std::string earlier, bool is_batch = false)
+      : std::runtime_error("the idempotency key belongs to another problem"),
+        id(std::move(earlier)),
+        of_batch(is_batch) {}
 
-  std::string job;  ///< the one that has the key
+  std::string id;  ///< of the job or batch that has the key
+  bool of_batch;
 };
 
 /// The store can neither be written nor perhaps read for now: the disk is full or broken. The text says why.
@@ -97,6 +101,15 @@ class JobStore {
   virtual std::optional<std::string> earlier(const std::string& owner, const std::string& key,
                                              const std::string& problem) = 0;
 
+  /// Takes all jobs of a new batch, or none, and returns it; or what earlier_batch() finds. Throws QueueFull
+  /// if not all may wait, and KeyReused.
+  virtual Batch add(NewBatch batch) = 0;
+
+  /// The batch that came from this owner with this key and the same request before. Throws KeyReused if it
+  /// was something else.
+  virtual std::optional<Batch> earlier_batch(const std::string& owner, const std::string& key,
+                                             const std::string& digest) = 0;
+
   /// Turns the oldest queued job into `running`. Survives the end of the process, perhaps not that of the
   /// machine.
   virtual std::optional<Claim> claim() = 0;
@@ -128,6 +141,15 @@ class JobStore {
 
   /// How many jobs there are of each status that any job has.
   virtual JobCounts count() const = 0;
+
+  /// A batch, as long as any of its jobs is there.
+  virtual std::optional<Batch> find_batch(const std::string& id) const = 0;
+
+  /// As count(), of the jobs of a batch.
+  virtual JobCounts count_of_batch(const std::string& id) const = 0;
+
+  /// Those jobs of a batch that ended at `since` or later, as BatchEnds::latest has it.
+  virtual BatchEnds ends_of_batch(const std::string& id, std::int64_t since) const = 0;
 
   /// The problem of a job, and what was found out once it has ended. If that is damaged, the job is `failed`
   /// from now on, and has no solution.

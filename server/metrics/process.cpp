@@ -23,9 +23,9 @@ ProcessStat read_stat() {
   std::ifstream file("/proc/self/stat");
   // The name of the program may hold blanks and brackets; the third field follows the last bracket.
   std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::istringstream fields(text.substr(text.rfind(')') + 1));
+  std::istringstream words(text.substr(text.rfind(')') + 1));
   std::vector<std::string> values{"pid", "name"};
-  for (std::string value; fields >> value;) values.push_back(value);
+  for (std::string value; words >> value;) values.push_back(value);
   const auto number = [&](std::size_t field) { return std::stod(values.at(field - 1)); };
   const auto ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
   const auto page = static_cast<double>(sysconf(_SC_PAGESIZE));

@@ -43,6 +43,8 @@ TEST(Limits, StandInTheOpenapiDocument) {
       {"Adaptive/properties/max_triangles/maximum", limits::triangles},
       {"Solver/properties/max_iterations/maximum", limits::iterations},
       {"Problem/properties/sweep/maxItems", limits::sweep_entries},
+      {"Batch/properties/problems/maxItems", limits::batch_problems},
+      {"Batch/properties/tags/maxItems", limits::tags},
       {"Study/properties/divisions/maxItems", limits::study_meshes},
       {"Study/properties/sizes/maxItems", limits::study_meshes},
       {"Study/properties/refine/maxItems", limits::study_meshes}};

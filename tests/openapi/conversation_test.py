@@ -141,7 +141,7 @@ class Conversation(unittest.TestCase):
                 return None
             media_type = reply_headers["Content-Type"].split(";")[0]
             self.assertIn(media_type, response["content"])
-            if "json" not in media_type:
+            if "json" not in media_type or media_type.endswith("ndjson"):
                 return reply
             value = json.loads(reply)
             errors = self.validate(response["content"][media_type]["schema"], value)
@@ -229,6 +229,30 @@ class Conversation(unittest.TestCase):
         self.call("DELETE", "/v1/solves", 400)
         count = self.call("DELETE", query, 409)["count"]
         self.assertEqual(self.call("DELETE", f"{query}&confirm={count}", 200), {"cancelled": 0, "deleted": 3})
+
+    def test_batches(self):
+        problems = [self.examples()["paper-nonconforming"], self.examples()["elastic-block"]]
+        body = json.dumps({"title": "two", "tags": ["of a batch"], "problems": problems})
+        batch = self.call("POST", "/v1/batches", 202, body, Idempotency_Key="a-batch")
+        self.assertEqual(self.call("POST", "/v1/batches", 202, body, Idempotency_Key="a-batch"), batch)
+        path = batch["links"]["self"]
+        lines = self.call("GET", path + "/results?fields=summary,contact", 200).decode().splitlines()
+        self.assertEqual({json.loads(line)["id"] for line in lines}, set(batch["solves"]))
+        for line in lines:
+            errors = self.validate({"$ref": "#/components/schemas/Result"}, json.loads(line))
+            self.assertEqual([error.message for error in errors], [])
+        self.call("GET", path + "/results", 200, Accept="application/cbor-seq")
+        self.call("GET", path + "/results", 406, Accept="text/html")
+        self.call("GET", path + "/results?fields=all", 400)
+        self.assertEqual(self.call("GET", path, 200)["counts"]["succeeded"], 2)
+        self.assertEqual(len(self.call("GET", "/v1/solves?tag=of%20a%20batch", 200)["solves"]), 2)
+        self.call("POST", "/v1/batches", 422, json.dumps({"problems": [*problems, {}]}))
+        self.call("POST", "/v1/batches", 413, json.dumps({"problems": [problems[0]] * 65}))
+        self.call("POST", "/v1/batches", 400, "[")
+        self.call("DELETE", path, 200)
+        self.call("GET", path, 404)
+        self.call("GET", path + "/results", 404)
+        self.call("DELETE", path, 404)
 
     def test_results_in_every_form(self):
         for name in ["paper-conforming", "elastic-block", "gap-sweep", "adaptive-mesh"]:

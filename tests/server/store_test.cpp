@@ -170,7 +170,7 @@ TEST_P(Store, TheSameKeyAndProblemAreTheSameJob) {
     store.add(new_job("b", "{2}", "key"));
     ADD_FAILURE() << "taken";
   } catch (const KeyReused& reused) {
-    EXPECT_EQ(reused.job, "a");
+    EXPECT_EQ(reused.id, "a");
   }
   store.finish(*store.claim(), success());
   EXPECT_EQ(store.add(new_job("b", "{1}", "key")), "a");
