@@ -23,7 +23,7 @@ sigset_t taken_signals() {
   return set;
 }
 
-void note_arrival(int signal) {
+void note_signal(int signal) {
   const int before = errno;
   ++(signal == SIGHUP ? hangups : stops);
   sem_post(&arrived);
@@ -54,7 +54,7 @@ bool take_one(std::atomic<int>& count) {
 StopSignals::StopSignals() {
   sem_init(&arrived, 0, 0);
   stops = hangups = 0;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, note_arrival);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, note_signal);
   // A file that may not grow is an error of the write, as on a full disk.
   handle(SIGXFSZ, SIG_IGN);
   const sigset_t set = taken_signals();

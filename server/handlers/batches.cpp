@@ -97,8 +97,8 @@ Response get_batch_results(Service& service, const Request& request) {
   // A proxy must not collect them.
   response.headers.emplace_back("X-Accel-Buffering", "no");
   if (request.method == "HEAD") return response;
-  std::shared_ptr<void> place = service.events.places().take();
-  if (!place) throw too_many_subscribers(service.events.places().count());
+  std::shared_ptr<void> place = service.events.open_streams().try_acquire();
+  if (!place) throw too_many_subscribers(service.events.open_streams().count());
   response.in_the_way = [&results = service.results] { return results.are_awaited(); };
   const api::Format format = request.reply_type == ndjson_media_type ? api::Format::json : api::Format::cbor;
   response.parts = std::make_shared<BatchResults>(service, batch.id, format, fields,

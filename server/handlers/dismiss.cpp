@@ -5,14 +5,14 @@
 #include <spdlog/spdlog.h>
 
 #include "server/handlers/document_response.hpp"
-#include "server/http/crew.hpp"
+#include "server/http/thread_pool.hpp"
 #include "server/log.hpp"
 
 namespace signorini::server {
 
 Dismissed dismiss(Service& service, std::span<const std::string> ids) {
   constexpr std::size_t at_once = 100;
-  const Crew::Rest rest;
+  const ThreadPool::Waiting rest;
   Dismissed dismissed;
   for (; !ids.empty(); ids = ids.subspan(std::min(at_once, ids.size()))) {
     const auto some = ids.first(std::min(at_once, ids.size()));

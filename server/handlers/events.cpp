@@ -203,8 +203,8 @@ Response get_events(Service& service, const Request& request) {
   if (has_ended(job.status)) return ended_response(service, std::move(job), place);
   Response response = event_response(job);
   if (request.method == "HEAD") return response;
-  const std::shared_ptr<void> seat = service.events.places().take();
-  if (!seat) throw too_many_subscribers(service.events.places().count());
+  const std::shared_ptr<void> seat = service.events.open_streams().try_acquire();
+  if (!seat) throw too_many_subscribers(service.events.open_streams().count());
   const auto source = std::make_shared<SolveEvents>(service.store, job.id, watch, place);
   response.take_connection = [&events = service.events, source, seat](int socket, std::string head) {
     events.add(socket, std::move(head), source, seat);

@@ -41,12 +41,13 @@ Families operator_families(const OperatorFigures& figures) {
           gauge("signorini_operator_cache_bytes", "Memory that they take.", number(figures.bytes))};
 }
 
-Families guest_families(const Service& service) {
-  const auto taken = [](const Places& places) {
-    return std::vector<Sample>{{static_cast<double>(places.taken())}};
+Families client_families(const Service& service) {
+  const auto acquired = [](const Semaphore& semaphore) {
+    return std::vector<Sample>{{static_cast<double>(semaphore.acquired())}};
   };
-  return {gauge("signorini_waiting_clients", "Clients that wait for their solves.", taken(service.waits)),
-          gauge("signorini_subscribers", "Streams of events that are open.", taken(service.events.places()))};
+  return {gauge("signorini_waiting_clients", "Clients that wait for their solves.", acquired(service.waits)),
+          gauge("signorini_subscribers", "Streams of events that are open.",
+                acquired(service.events.open_streams()))};
 }
 
 void append(Families& to, Families from) {
@@ -64,7 +65,7 @@ Response get_metrics(Service& service, const Request& request) {
   append(families, solve_families(service.store));
   append(families, operator_families(service.operators.figures()));
   append(families, service.metrics.collect());
-  append(families, guest_families(service));
+  append(families, client_families(service));
   append(families, process_families());
   Response response = Response::empty(200);
   response.content_type = "text/plain; version=0.0.4; charset=utf-8";

@@ -6,7 +6,7 @@
 #include "server/access/access.hpp"
 #include "server/handlers/shared_results.hpp"
 #include "server/http/event_streams.hpp"
-#include "server/http/places.hpp"
+#include "server/http/semaphore.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/store.hpp"
@@ -34,7 +34,7 @@ struct Service {
   const KeptOperators& operators;
   Metrics& metrics;
   UniqueIds ids = {};
-  Places waits{limits.max_waits};  ///< of clients that wait
+  Semaphore waits{limits.max_waits};  ///< of clients that wait
   SharedResults results{store, limits.max_result_bytes};
 };
 

@@ -1,7 +1,7 @@
 #include "server/handlers/shared_results.hpp"
 
-#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
+#include "server/http/thread_pool.hpp"
 
 namespace signorini::server {
 namespace {
@@ -62,7 +62,7 @@ std::optional<JobResult> SharedResults::get(const std::string& id) {
   const std::shared_ptr<Place> place = place_of(id);
   std::unique_lock reading(place->reading, std::try_to_lock);
   if (!reading) {
-    const Crew::Rest rest;
+    const ThreadPool::Waiting rest;
     reading.lock();
   }
   std::shared_ptr<const Held> held = place->held.lock();
@@ -86,7 +86,7 @@ void SharedResults::take(std::size_t bytes) {
   std::unique_lock lock(mutex_);
   const auto fits = [&] { return taken_ == 0 || taken_ + bytes <= max_bytes_; };
   if (!fits()) {
-    const Crew::Rest rest;
+    const ThreadPool::Waiting rest;
     ++awaiting_;
     const bool is_room = given_back_.wait_for(lock, patience_, fits);
     --awaiting_;

@@ -104,7 +104,7 @@ Response accept(Service& service, const Request& request,
   const std::string id = submit(service, request, std::move(job));
 
   // Where too many wait, nobody is refused for it: the status document says how to go on.
-  std::shared_ptr<void> place = wait ? service.waits.take() : nullptr;
+  std::shared_ptr<void> place = wait ? service.waits.try_acquire() : nullptr;
   if (!place) return answer(service, request, service.store.find(id), false, fields);
   return answer_later(service, request, id, *wait, fields, std::move(place));
 }

@@ -5,8 +5,8 @@
 #include <spdlog/spdlog.h>
 
 #include "server/handlers/documents.hpp"
-#include "server/http/crew.hpp"
 #include "server/http/error.hpp"
+#include "server/http/thread_pool.hpp"
 #include "server/log.hpp"
 
 namespace signorini::server {
@@ -57,7 +57,7 @@ template <typename Queue>
 auto queued(const Request& request, const std::optional<std::string>& key, std::size_t jobs,
             const Queue& queue) {
   try {
-    const Crew::Rest rest;
+    const ThreadPool::Waiting rest;
     return queue();
   } catch (const QueueFull& full) {
     throw no_places(full, jobs, request.identity.name);

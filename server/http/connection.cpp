@@ -12,7 +12,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "server/http/crew.hpp"
+#include "server/http/thread_pool.hpp"
 
 namespace signorini::server {
 namespace {
@@ -44,7 +44,7 @@ std::string address_of_client(int socket) {
 
 }  // namespace
 
-Connection::Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
+Connection::Connection(int socket, int stop_event, const MessageLimits& limits, Semaphore& slow_readers,
                        std::shared_ptr<void> place)
     : place_(std::move(place)),
       socket_(socket),
@@ -97,7 +97,7 @@ bool Connection::is_in_the_way() {
     paced_since_ += time;
     paced_from_ = taken;
   }
-  return is_slow_ && (slow_readers_.taken() >= slow_readers_.count() || (in_the_way_ && in_the_way_()));
+  return is_slow_ && (slow_readers_.acquired() >= slow_readers_.count() || (in_the_way_ && in_the_way_()));
 }
 
 /// In one of the places for slow readers; false if there is none in time either.
@@ -106,7 +106,7 @@ bool Connection::wait_in_place(Clock::time_point until) {
   const auto give_up = std::min(until, Clock::now() + limits_.slow);
   std::shared_ptr<void> place;
   while (Clock::now() < until) {
-    if (!place) place = slow_readers_.take();
+    if (!place) place = slow_readers_.try_acquire();
     if (is_in_the_way() || (!place && Clock::now() > give_up)) return false;
     if (poll_until(socket_, POLLOUT, std::min(until, Clock::now() + look_around))) return true;
   }
@@ -117,7 +117,7 @@ bool Connection::wait_in_place(Clock::time_point until) {
 bool Connection::wait_writable() {
   constexpr auto moment = std::chrono::milliseconds(20);
   if (poll_until(socket_, POLLOUT, Clock::now())) return true;
-  const Crew::Rest rest;
+  const ThreadPool::Waiting rest;
   if (poll_until(socket_, POLLOUT, Clock::now() + moment)) return true;
   if (Clock::now() - patient_since_ > limits_.time) {
     if (sent_ - patient_from_ < limits_.bytes) return false;

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "server/http/message_reader.hpp"
-#include "server/http/places.hpp"
+#include "server/http/semaphore.hpp"
 
 namespace signorini::server {
 
@@ -32,7 +32,7 @@ class Connection {
   /// The place is kept until it is left, or the connection is closed. `slow_readers` is how many clients may
   /// keep a thread waiting until they take more of a reply; where there are more, the slow ones are left.
   /// Every wait ends when the stop event (an eventfd of the listener) is signalled.
-  Connection(int socket, int stop_event, const MessageLimits& limits, Places& slow_readers,
+  Connection(int socket, int stop_event, const MessageLimits& limits, Semaphore& slow_readers,
              std::shared_ptr<void> place);
   ~Connection();
 
@@ -89,7 +89,7 @@ class Connection {
   const std::string remote_address_;
   const int stop_event_;
   const WriteLimits limits_;
-  Places& slow_readers_;
+  Semaphore& slow_readers_;
   MessageReader reader_;
   bool ended_ = false;
   std::string reply_;

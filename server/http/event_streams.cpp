@@ -96,7 +96,7 @@ struct EventStreams::Subscriber {
 
 EventStreams::EventStreams(std::size_t max_subscribers, std::chrono::milliseconds silence)
     : silence_(silence),
-      places_(max_subscribers),
+      open_streams_(max_subscribers),
       wake_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       thread_(&EventStreams::run, this) {}
 

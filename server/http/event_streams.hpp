@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "server/http/places.hpp"
+#include "server/http/semaphore.hpp"
 
 namespace signorini::server {
 
@@ -37,7 +37,7 @@ class EventStreams {
   EventStreams& operator=(const EventStreams&) = delete;
 
   /// One for each subscriber.
-  Places& places() { return places_; }
+  Semaphore& open_streams() { return open_streams_; }
 
   /// Sends the head of the reply and the events of the source to the socket, which is closed when they have
   /// ended.
@@ -54,7 +54,7 @@ class EventStreams {
   void wait();
 
   const std::chrono::milliseconds silence_;
-  Places places_;
+  Semaphore open_streams_;
   const int wake_event_;
   std::atomic<bool> stopping_ = false;
   std::mutex mutex_;

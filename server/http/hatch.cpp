@@ -41,10 +41,10 @@ void Hatch::deliver(std::shared_ptr<Connection> connection, std::string reply, b
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
   bytes_ += left;
-  guests_.emplace(socket, Guest{std::move(connection), goes_on, left, now, now + limits_.write.time, left});
+  clients_.emplace(socket, Client{std::move(connection), goes_on, left, now, now + limits_.write.time, left});
   epoll_event writable{EPOLLOUT, {.fd = socket}};
   epoll_ctl(epoll_, EPOLL_CTL_ADD, socket, &writable);
-  while (guests_.size() > limits_.guests || bytes_ > limits_.bytes) leave_one();
+  while (clients_.size() > limits_.clients || bytes_ > limits_.bytes) leave_one();
 }
 
 void Hatch::stop() {
@@ -55,7 +55,7 @@ void Hatch::stop() {
   }
   ::eventfd_write(wake_event_, 1);
   thread_.join();
-  guests_.clear();
+  clients_.clear();
 }
 
 void Hatch::run() {
@@ -71,24 +71,24 @@ void Hatch::run() {
         look_around = Clock::now() + std::chrono::milliseconds(look_at_replies_ms);
       }
     }
-    for (Guest& guest : std::exchange(done_, {})) taken_(std::move(guest.connection), guest.goes_on);
+    for (Client& client : std::exchange(done_, {})) taken_(std::move(client.connection), client.goes_on);
   }
 }
 
 bool Hatch::is_over() {
   const std::lock_guard lock(mutex_);
-  return closes_ && (guests_.empty() || Clock::now() >= *closes_);
+  return closes_ && (clients_.empty() || Clock::now() >= *closes_);
 }
 
 void Hatch::serve(int socket) {
-  const auto found = guests_.find(socket);
-  if (found == guests_.end()) {
+  const auto found = clients_.find(socket);
+  if (found == clients_.end()) {
     eventfd_t woken = 0;
     if (socket == wake_event_) ::eventfd_read(wake_event_, &woken);
     return;
   }
-  Guest& guest = found->second;
-  switch (guest.connection->deliver()) {
+  Client& client = found->second;
+  switch (client.connection->deliver()) {
     case Delivery::whole:
       done_.push_back(remove(found));
       break;
@@ -96,26 +96,26 @@ void Hatch::serve(int socket) {
       remove(found);
       break;
     case Delivery::part:
-      const std::size_t left = guest.connection->undelivered();
-      if (left < guest.left) guest.since = Clock::now();
-      bytes_ -= guest.left - left;
-      guest.left = left;
+      const std::size_t left = client.connection->undelivered();
+      if (left < client.left) client.since = Clock::now();
+      bytes_ -= client.left - left;
+      client.left = left;
       break;
   }
 }
 
 void Hatch::leave_slow_ones() {
   const auto now = Clock::now();
-  for (auto found = guests_.begin(); found != guests_.end();) {
+  for (auto found = clients_.begin(); found != clients_.end();) {
     const auto next = std::next(found);
-    Guest& guest = found->second;
-    if (guest.deadline <= now) {
-      if (guest.left_then - guest.left < limits_.write.bytes) {
-        guest.connection->forget_unsent();
+    Client& client = found->second;
+    if (client.deadline <= now) {
+      if (client.left_then - client.left < limits_.write.bytes) {
+        client.connection->forget_unsent();
         remove(found);
       } else {
-        guest.deadline = now + limits_.write.time;
-        guest.left_then = guest.left;
+        client.deadline = now + limits_.write.time;
+        client.left_then = client.left;
       }
     }
     found = next;
@@ -125,16 +125,16 @@ void Hatch::leave_slow_ones() {
 /// The one who has taken nothing for the longest time.
 void Hatch::leave_one() {
   const auto slowest = std::ranges::min_element(
-      guests_, {}, [](const Guests::value_type& guest) { return guest.second.since; });
+      clients_, {}, [](const Clients::value_type& client) { return client.second.since; });
   slowest->second.connection->forget_unsent();
   remove(slowest);
 }
 
-Hatch::Guest Hatch::remove(Guests::iterator guest) {
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, guest->first, nullptr);
-  Guest removed = std::move(guest->second);
+Hatch::Client Hatch::remove(Clients::iterator client) {
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, client->first, nullptr);
+  Client removed = std::move(client->second);
   bytes_ -= removed.left;
-  guests_.erase(guest);
+  clients_.erase(client);
   return removed;
 }
 

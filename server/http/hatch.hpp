@@ -15,9 +15,9 @@
 namespace signorini::server {
 
 struct HatchLimits {
-  std::size_t guests = 1024;          ///< that have not taken their replies
+  std::size_t clients = 1024;         ///< that have not taken their replies
   std::size_t bytes = 64 << 20;       ///< of which so much is left, all together
-  WriteLimits write = {};             ///< how much a guest has to take in which time
+  WriteLimits write = {};             ///< how much a client has to take in which time
   std::chrono::seconds last_call{1};  ///< for those who still take when all ends
 };
 
@@ -44,7 +44,7 @@ class Hatch {
  private:
   using Clock = std::chrono::steady_clock;
 
-  struct Guest {
+  struct Client {
     std::shared_ptr<Connection> connection;
     bool goes_on;
     std::size_t left;         ///< of the reply
@@ -52,14 +52,14 @@ class Hatch {
     Clock::time_point deadline;
     std::size_t left_then;  ///< when the deadline was set
   };
-  using Guests = std::map<int, Guest>;  ///< by socket
+  using Clients = std::map<int, Client>;  ///< by socket
 
   void run();
   bool is_over();
   void serve(int socket);
   void leave_slow_ones();
   void leave_one();
-  Guest remove(Guests::iterator guest);
+  Client remove(Clients::iterator client);
 
   const HatchLimits limits_;
   const Taken taken_;
@@ -68,9 +68,9 @@ class Hatch {
 
   std::mutex mutex_;
   std::optional<Clock::time_point> closes_;
-  Guests guests_;
-  std::size_t bytes_ = 0;    ///< that are left of all replies
-  std::vector<Guest> done_;  ///< who have taken theirs; of the thread alone
+  Clients clients_;
+  std::size_t bytes_ = 0;     ///< that are left of all replies
+  std::vector<Client> done_;  ///< who have taken theirs; of the thread alone
   std::thread thread_;
 };
 

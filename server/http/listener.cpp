@@ -15,12 +15,12 @@
 #include <unistd.h>
 
 #include "server/http/content.hpp"
-#include "server/http/crew.hpp"
 #include "server/http/dispatch.hpp"
 #include "server/http/hatch.hpp"
-#include "server/http/lobby.hpp"
+#include "server/http/pending_connections.hpp"
 #include "server/http/query.hpp"
 #include "server/http/reply.hpp"
+#include "server/http/thread_pool.hpp"
 #include "server/http/waiting_room.hpp"
 
 namespace signorini::server {
@@ -51,7 +51,7 @@ bool is_compressed(const Message& message) {
 
 /// Whether it may take long to read what the message brings, or to decode it.
 bool is_long_to_read(const Message& message) {
-  return message.body.size() > LobbyLimits{}.short_body || is_compressed(message);
+  return message.body.size() > PendingLimits{}.short_body || is_compressed(message);
 }
 
 /// What there is to read, about: JSON becomes so many times as long as it was sent.
@@ -60,8 +60,8 @@ std::uint64_t bytes_to_read(const Message& message) {
   return is_compressed(message) ? usual_ratio * message.body.size() : message.body.size();
 }
 
-LobbyLimits lobby_limits(const ListenerOptions& options) {
-  LobbyLimits limits;
+PendingLimits pending_limits(const ListenerOptions& options) {
+  PendingLimits limits;
   limits.long_bodies = std::max(limits.long_bodies, 2 * options.max_body_bytes);
   return limits;
 }
@@ -152,8 +152,8 @@ Task reading_of(const std::shared_ptr<Connection>& connection, std::function<voi
 
 }  // namespace
 
-/// Connections wait in the lobby until a request has come, in the waiting room until a reply can be made, and
-/// at the hatch until it is taken; crews answer them between.
+/// Connections are pending until a request has come, wait in the waiting room until a reply can be made, and
+/// at the hatch until it is taken; thread pools answer them between.
 class Listener::Impl {
  public:
   Impl(const ListenerOptions& options, const Router& router)
@@ -163,18 +163,18 @@ class Listener::Impl {
         router_(router),
         message_limits_(message_limits(options)),
         slow_readers_(options.long_replies / 2),
-        crew_(most_at_work(), most_at_work()),
-        probes_crew_(2, 2),
+        pool_(most_at_work(), most_at_work()),
+        probe_pool_(2, 2),
         takers_(most_at_work(), cores()),
         readers_(readers, 1),
         carriers_(options.long_replies, cores()),
         hatch_({},
                [this](std::shared_ptr<Connection> connection, bool goes_on) {
-                 connection->keep_place(lobby_.take_place());
+                 connection->keep_place(pending_.take_place());
                  move_on(std::move(connection), goes_on);
                }),
-        lobby_(
-            lobby_limits(options),
+        pending_(
+            pending_limits(options),
             [this](Connection& connection) {
               Request request = request_of(connection, connection.reader().message());
               return router_.refuses(request);
@@ -204,9 +204,9 @@ class Listener::Impl {
     if (stopping_.exchange(true)) return;
     ::eventfd_write(stop_event_, 1);
     if (accepting_.joinable()) accepting_.join();
-    lobby_.stop();
+    pending_.stop();
     waiting_room_.stop();
-    for (Crew* crew : {&probes_crew_, &takers_, &readers_, &crew_, &carriers_}) crew->shutdown();
+    for (ThreadPool* pool : {&probe_pool_, &takers_, &readers_, &pool_, &carriers_}) pool->shutdown();
     hatch_.stop();
   }
 
@@ -234,12 +234,12 @@ class Listener::Impl {
     const int yes = 1, most_unsent = 128 * 1024;
     setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
     setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &most_unsent, sizeof(most_unsent));
-    std::shared_ptr<void> place = lobby_.take_place();
+    std::shared_ptr<void> place = pending_.take_place();
     if (!place) {
       ::close(socket);
       return;
     }
-    lobby_.admit(
+    pending_.admit(
         std::make_shared<Connection>(socket, stop_event_, message_limits_, slow_readers_, std::move(place)));
   }
 
@@ -247,29 +247,29 @@ class Listener::Impl {
   void take_in(const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_room) {
     const Message& message = connection->reader().message();
     const auto came = std::chrono::steady_clock::now();
-    const auto serve_by = [&](Crew& crew) {
-      return [this, &crew, connection, body_room = std::move(body_room), came] {
-        serve(crew, connection, body_room, came);
+    const auto serve_by = [&](ThreadPool& pool) {
+      return [this, &pool, connection, body_room = std::move(body_room), came] {
+        serve(pool, connection, body_room, came);
       };
     };
     if (!message.body.empty()) {
       const bool is_long = is_long_to_read(message) || router_.is_long_to_read(message.method, message.path);
-      Crew& crew = is_long ? readers_ : takers_;
-      crew.enqueue(reading_of(connection, serve_by(crew)));
+      ThreadPool& pool = is_long ? readers_ : takers_;
+      pool.enqueue(reading_of(connection, serve_by(pool)));
     } else {
-      Crew& crew = message.refusal ? takers_ : crew_for_reply(message);
-      crew.enqueue(reply_to(connection, serve_by(crew)));
+      ThreadPool& pool = message.refusal ? takers_ : pool_for_reply(message);
+      pool.enqueue(reply_to(connection, serve_by(pool)));
     }
   }
 
-  Crew& crew_for_reply(const Message& message) {
-    if (router_.is_for_probes(message.path)) return probes_crew_;
-    return router_.is_long(message.method, message.path, read_query(message.query)) ? carriers_ : crew_;
+  ThreadPool& pool_for_reply(const Message& message) {
+    if (router_.is_for_probes(message.path)) return probe_pool_;
+    return router_.is_long(message.method, message.path, read_query(message.query)) ? carriers_ : pool_;
   }
 
   /// A long body has its room until it was read by the handler, or will not be.
-  void serve(const Crew& crew, const std::shared_ptr<Connection>& connection, std::shared_ptr<void> body_room,
-             std::chrono::steady_clock::time_point came) {
+  void serve(const ThreadPool& pool, const std::shared_ptr<Connection>& connection,
+             std::shared_ptr<void> body_room, std::chrono::steady_clock::time_point came) {
     const auto exchange = std::make_shared<Exchange>();
     exchange->connection = connection;
     exchange->message = connection->reader().next();
@@ -293,7 +293,7 @@ class Listener::Impl {
     exchange->message.body = {};
     body_room.reset();
     if (response.later) return keep_waiting(exchange, response.later);
-    reply(crew, exchange, std::move(response));
+    reply(pool, exchange, std::move(response));
   }
 
   void keep_waiting(const std::shared_ptr<Exchange>& exchange,
@@ -302,18 +302,18 @@ class Listener::Impl {
     waiting_room_.add(
         exchange->connection->socket(), promised->until, promised->subscribe,
         [this, exchange, promised](bool client_left) {
-          Crew& crew = client_left ? takers_ : crew_for_reply(exchange->message);
-          crew.enqueue(task_of(*exchange->connection, [this, &crew, exchange, promised, client_left] {
+          ThreadPool& pool = client_left ? takers_ : pool_for_reply(exchange->message);
+          pool.enqueue(task_of(*exchange->connection, [this, &pool, exchange, promised, client_left] {
             if (client_left) return leave(exchange->request, *promised);
             Response response = resume(router_, exchange->request, *promised);
-            exchange->connection->keep_place(lobby_.take_place());
-            reply(crew, exchange, std::move(response));
+            exchange->connection->keep_place(pending_.take_place());
+            reply(pool, exchange, std::move(response));
           }));
         });
   }
 
-  /// By the crew at hand, but what is long by those who carry such.
-  void reply(const Crew& crew, const std::shared_ptr<Exchange>& exchange, Response response) {
+  /// By the pool at hand, but what is long by those who carry such.
+  void reply(const ThreadPool& pool, const std::shared_ptr<Exchange>& exchange, Response response) {
     Connection& connection = *exchange->connection;
     const Message& message = exchange->message;
     if (response.take_connection) {
@@ -323,7 +323,7 @@ class Listener::Impl {
     if (response.parts && message.method != "HEAD")
       return carry_parts_by_a_carrier(exchange, std::make_shared<const Response>(std::move(response)), true);
     if (response.write_body && message.method != "HEAD") {
-      if (&crew == &carriers_) return carry(*exchange, response);
+      if (&pool == &carriers_) return carry(*exchange, response);
       return carriers_.enqueue(task_of(
           connection, [this, exchange, response = std::move(response)] { carry(*exchange, response); }));
     }
@@ -345,14 +345,14 @@ class Listener::Impl {
   }
 
   /// Those that there are by now. The next ones are waited for without a thread, and without a place in the
-  /// lobby.
+  /// pending connections.
   void carry_parts(const std::shared_ptr<Exchange>& exchange, const std::shared_ptr<const Response>& response,
                    bool first) {
     const std::shared_ptr<Connection>& connection = exchange->connection;
     const Delivery delivery =
         send_parts(*connection, exchange->message, *response, first, exchange->request.id);
     if (delivery != Delivery::part || stopping_) {
-      connection->keep_place(lobby_.take_place());
+      connection->keep_place(pending_.take_place());
       return move_on(connection, delivery == Delivery::whole && goes_on(exchange->message, *response));
     }
     connection->keep_place(nullptr);
@@ -369,7 +369,7 @@ class Listener::Impl {
   }
 
   void move_on(std::shared_ptr<Connection> connection, bool goes_on) {
-    goes_on ? lobby_.admit(std::move(connection)) : lobby_.see_off(std::move(connection));
+    goes_on ? pending_.admit(std::move(connection)) : pending_.linger(std::move(connection));
   }
 
   const int socket_;
@@ -377,15 +377,16 @@ class Listener::Impl {
   const int stop_event_;
   const Router& router_;
   const MessageLimits message_limits_;
-  Places slow_readers_;
-  Crew crew_;         ///< for those who look, and are answered shortly
-  Crew probes_crew_;  ///< so that probes are answered however much there is to do
-  Crew takers_;       ///< of short bodies, each of which may cost more than many looks
-  Crew readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
-  Crew carriers_;  ///< of long replies, so that short ones do not wait for them
+  Semaphore slow_readers_;
+  ThreadPool pool_;        ///< for those who look, and are answered shortly
+  ThreadPool probe_pool_;  ///< so that probes are answered however much there is to do
+  ThreadPool takers_;      ///< of short bodies, each of which may cost more than many looks
+  ThreadPool
+      readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
+  ThreadPool carriers_;  ///< of long replies, so that short ones do not wait for them
   WaitingRoom waiting_room_;
   Hatch hatch_;
-  Lobby lobby_;
+  PendingConnections pending_;
   std::atomic<bool> stopping_ = false;
   std::thread accepting_;
 };

@@ -16,7 +16,7 @@ constexpr std::uint64_t nobody = 0;
 
 }  // namespace
 
-/// Rung by those for whom a guest has waited, also when the room is gone.
+/// Rung by those for whom a client has waited, also when the room is gone.
 class WaitingRoom::Bell {
  public:
   Bell() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
@@ -28,10 +28,10 @@ class WaitingRoom::Bell {
   int event() const { return event_; }
   void ring() const { ::eventfd_write(event_, 1); }
 
-  void ring_for(std::uint64_t guest) {
+  void ring_for(std::uint64_t client) {
     {
       const std::lock_guard lock(mutex_);
-      called_.push_back(guest);
+      called_.push_back(client);
     }
     ring();
   }
@@ -66,10 +66,10 @@ void WaitingRoom::add(int socket, Clock::time_point until, const Subscribe& subs
     const std::lock_guard lock(mutex_);
     if (!stopping_) {
       const std::uint64_t number = ++last_number_;
-      guests_.emplace(number, Guest{socket, until, std::move(go_on), nullptr});
+      clients_.emplace(number, Client{socket, until, std::move(go_on), nullptr});
       epoll_event left{EPOLLRDHUP, {.u64 = number}};
       epoll_ctl(epoll_, EPOLL_CTL_ADD, socket, &left);
-      guests_.at(number).subscription = subscribe([bell = bell_, number] { bell->ring_for(number); });
+      clients_.at(number).subscription = subscribe([bell = bell_, number] { bell->ring_for(number); });
       bell_->ring();  // there may be a nearer time
       return;
     }
@@ -86,7 +86,7 @@ void WaitingRoom::stop() {
   bell_->ring();
   thread_.join();
   const std::lock_guard lock(mutex_);
-  while (!guests_.empty()) send_on(guests_.begin()->first, false);
+  while (!clients_.empty()) send_on(clients_.begin()->first, false);
 }
 
 void WaitingRoom::run() {
@@ -104,28 +104,28 @@ void WaitingRoom::run() {
 }
 
 void WaitingRoom::send_on(std::uint64_t number, bool client_left) {
-  const auto found = guests_.find(number);
-  if (found == guests_.end()) return;
-  const Guest guest = std::move(found->second);
-  guests_.erase(found);
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, guest.socket, nullptr);
-  guest.go_on(client_left);
+  const auto found = clients_.find(number);
+  if (found == clients_.end()) return;
+  const Client client = std::move(found->second);
+  clients_.erase(found);
+  epoll_ctl(epoll_, EPOLL_CTL_DEL, client.socket, nullptr);
+  client.go_on(client_left);
 }
 
 void WaitingRoom::send_on_late() {
   const auto now = Clock::now();
   std::vector<std::uint64_t> late;
-  for (const auto& [number, guest] : guests_) {
-    if (guest.until <= now) late.push_back(number);
+  for (const auto& [number, client] : clients_) {
+    if (client.until <= now) late.push_back(number);
   }
   for (const std::uint64_t number : late) send_on(number, false);
 }
 
 int WaitingRoom::milliseconds_to_next() {
   const std::lock_guard lock(mutex_);
-  if (guests_.empty()) return -1;
+  if (clients_.empty()) return -1;
   const auto next = std::ranges::min_element(
-      guests_, {}, [](const Guests::value_type& guest) { return guest.second.until; });
+      clients_, {}, [](const Clients::value_type& client) { return client.second.until; });
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(next->second.until - Clock::now()).count();
   return static_cast<int>(std::clamp<decltype(left)>(left, 0, 3'600'000));
 }

@@ -35,13 +35,13 @@ class WaitingRoom {
  private:
   class Bell;
 
-  struct Guest {
+  struct Client {
     int socket;
     Clock::time_point until;
     GoOn go_on;
     std::shared_ptr<void> subscription;
   };
-  using Guests = std::map<std::uint64_t, Guest>;  ///< by number
+  using Clients = std::map<std::uint64_t, Client>;  ///< by number
 
   void run();
   void send_on(std::uint64_t number, bool client_left);
@@ -53,7 +53,7 @@ class WaitingRoom {
 
   std::mutex mutex_;
   bool stopping_ = false;
-  Guests guests_;
+  Clients clients_;
   std::uint64_t last_number_ = 0;
   std::thread thread_;
 };

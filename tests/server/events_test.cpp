@@ -264,8 +264,8 @@ TEST(EventStreams, SendCommentsInTheSilence) {
   EventStreams streams(1, 60ms);
   int sockets[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, sockets), 0);
-  streams.add(sockets[0], "head", std::make_shared<Silent>(), streams.places().take());
-  EXPECT_EQ(streams.places().take(), nullptr);
+  streams.add(sockets[0], "head", std::make_shared<Silent>(), streams.open_streams().try_acquire());
+  EXPECT_EQ(streams.open_streams().try_acquire(), nullptr);
   char head[4];
   ASSERT_EQ(::recv(sockets[1], head, sizeof head, MSG_WAITALL), 4);
   EXPECT_EQ(std::string(head, 4), "head");

@@ -60,7 +60,7 @@ class Client {
  private:
   int socket_ = -1;
   const int stop_event_ = eventfd(0, EFD_CLOEXEC);
-  Places slow_readers_{1};
+  Semaphore slow_readers_{1};
   std::shared_ptr<Connection> connection_;
 };
 
@@ -68,7 +68,7 @@ class AtTheHatch : public testing::Test {
  protected:
   static HatchLimits limits() {
     HatchLimits few;
-    few.guests = 2;
+    few.clients = 2;
     return few;
   }
 

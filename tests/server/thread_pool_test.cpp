@@ -1,4 +1,4 @@
-#include "server/http/crew.hpp"
+#include "server/http/thread_pool.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -6,25 +6,25 @@
 
 #include <gtest/gtest.h>
 
-namespace signorini::server::crew_test {
+namespace signorini::server::thread_pool_test {
 namespace {
 
-TEST(Crew, DoesEverythingBeforeItEnds) {
+TEST(ThreadPool, DoesEverythingBeforeItEnds) {
   std::atomic<int> done = 0;
   {
-    Crew crew(4, 2);
-    for (int i = 0; i < 1000; ++i) crew.enqueue({[&] { ++done; }});
+    ThreadPool pool(4, 2);
+    for (int i = 0; i < 1000; ++i) pool.enqueue({[&] { ++done; }});
   }
   EXPECT_EQ(done, 1000);
 }
 
-TEST(Crew, HasOnlyAFewAtWork) {
+TEST(ThreadPool, HasOnlyAFewAtWork) {
   std::atomic<int> at_work = 0;
   std::atomic<int> most = 0;
   {
-    Crew crew(8, 2);
+    ThreadPool pool(8, 2);
     for (int i = 0; i < 50; ++i) {
-      crew.enqueue({[&] {
+      pool.enqueue({[&] {
         const int now = ++at_work;
         for (int before = most; before < now && !most.compare_exchange_weak(before, now);) continue;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -36,15 +36,15 @@ TEST(Crew, HasOnlyAFewAtWork) {
 }
 
 /// Each waits for all of them: without a rest, the second would never begin.
-TEST(Crew, LetsOthersWorkMeanwhile) {
+TEST(ThreadPool, LetsOthersWorkMeanwhile) {
   std::latch all(6);
   std::atomic<int> done = 0;
   {
-    Crew crew(6, 1);
+    ThreadPool pool(6, 1);
     for (int i = 0; i < 6; ++i) {
-      crew.enqueue({[&] {
+      pool.enqueue({[&] {
         {
-          const Crew::Rest rest;
+          const ThreadPool::Waiting rest;
           all.arrive_and_wait();
         }
         ++done;
@@ -55,24 +55,24 @@ TEST(Crew, LetsOthersWorkMeanwhile) {
 }
 
 /// And what they hold is given back while others wait, whoever's turn is next.
-TEST(Crew, DoesNothingForThoseWhoHaveLeft) {
+TEST(ThreadPool, DoesNothingForThoseWhoHaveLeft) {
   std::latch begun(1), may_go_on(1);
   std::atomic<int> done = 0;
   std::atomic<bool> left = false;
   const auto held = std::make_shared<int>();
-  Crew crew(1, 1);
-  crew.enqueue({[&] {
+  ThreadPool pool(1, 1);
+  pool.enqueue({[&] {
     begun.count_down();
     may_go_on.wait();
   }});
   begun.wait();
-  for (int i = 0; i < 100; ++i) crew.enqueue({[&, held] { ++done; }, "a", {}, [&] { return left.load(); }});
+  for (int i = 0; i < 100; ++i) pool.enqueue({[&, held] { ++done; }, "a", {}, [&] { return left.load(); }});
   left = true;
   may_go_on.count_down();
-  crew.shutdown();
+  pool.shutdown();
   EXPECT_EQ(done, 0);
   EXPECT_EQ(held.use_count(), 1);
 }
 
 }  // namespace
-}  // namespace signorini::server::crew_test
+}  // namespace signorini::server::thread_pool_test

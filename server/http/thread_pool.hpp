@@ -13,28 +13,28 @@ namespace signorini::server {
 /// Threads that do what they are given, sender by sender in turn. Only a few are at work at the same time,
 /// for more would but take turns on the cores and be done later, all of them; but one that waits for a client
 /// or a solve is not at work, and another takes its place. What a client has left behind is not begun.
-class Crew {
+class ThreadPool {
  public:
   /// `threads` in all, `at_work` at the same time.
-  Crew(std::size_t threads, std::size_t at_work);
-  ~Crew();
+  ThreadPool(std::size_t threads, std::size_t at_work);
+  ~ThreadPool();
 
-  Crew(const Crew&) = delete;
-  Crew& operator=(const Crew&) = delete;
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
   void enqueue(Task task);
 
   /// Returns when everything that was enqueued is done.
   void shutdown();
 
-  /// While it lives, its thread waits for something. Does nothing outside a crew.
-  class Rest {
+  /// While it lives, its thread waits for something. Does nothing outside a pool.
+  class Waiting {
    public:
-    Rest();
-    ~Rest();
+    Waiting();
+    ~Waiting();
 
-    Rest(const Rest&) = delete;
-    Rest& operator=(const Rest&) = delete;
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
   };
 
  private:

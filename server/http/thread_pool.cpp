@@ -1,23 +1,23 @@
-#include "server/http/crew.hpp"
+#include "server/http/thread_pool.hpp"
 
 #include <utility>
 
 namespace signorini::server {
 namespace {
 
-thread_local Crew* own_crew = nullptr;
+thread_local ThreadPool* own_pool = nullptr;
 
 }  // namespace
 
-Crew::Crew(std::size_t threads, std::size_t at_work) : most_at_work_(at_work) {
-  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back(&Crew::work, this);
+ThreadPool::ThreadPool(std::size_t threads, std::size_t at_work) : most_at_work_(at_work) {
+  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back(&ThreadPool::work, this);
 }
 
-Crew::~Crew() {
+ThreadPool::~ThreadPool() {
   shutdown();
 }
 
-void Crew::enqueue(Task task) {
+void ThreadPool::enqueue(Task task) {
   {
     const std::lock_guard lock(mutex_);
     tasks_.add(std::move(task));
@@ -25,7 +25,7 @@ void Crew::enqueue(Task task) {
   may_work_.notify_one();
 }
 
-void Crew::shutdown() {
+void ThreadPool::shutdown() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -34,8 +34,8 @@ void Crew::shutdown() {
   for (std::thread& thread : std::exchange(threads_, {})) thread.join();
 }
 
-void Crew::work() {
-  own_crew = this;
+void ThreadPool::work() {
+  own_pool = this;
   std::unique_lock lock(mutex_);
   for (;;) {
     may_work_.wait(lock, [this] { return tasks_.empty() ? ending_ : at_work_ < most_at_work_; });
@@ -54,7 +54,7 @@ void Crew::work() {
 }
 
 /// What they hold is given back soon, also by those whose turn is far.
-std::vector<Task> Crew::unwanted_now_and_then() {
+std::vector<Task> ThreadPool::unwanted_now_and_then() {
   constexpr std::chrono::milliseconds between_looks{250};
   const auto now = Clock::now();
   if (now < look_again_) return {};
@@ -62,7 +62,7 @@ std::vector<Task> Crew::unwanted_now_and_then() {
   return tasks_.take_unwanted();
 }
 
-void Crew::leave_work() {
+void ThreadPool::leave_work() {
   {
     const std::lock_guard lock(mutex_);
     --at_work_;
@@ -71,17 +71,17 @@ void Crew::leave_work() {
 }
 
 /// At once, even if more are at work then: a task that was begun is to end.
-void Crew::return_to_work() {
+void ThreadPool::return_to_work() {
   const std::lock_guard lock(mutex_);
   ++at_work_;
 }
 
-Crew::Rest::Rest() {
-  if (own_crew != nullptr) own_crew->leave_work();
+ThreadPool::Waiting::Waiting() {
+  if (own_pool != nullptr) own_pool->leave_work();
 }
 
-Crew::Rest::~Rest() {
-  if (own_crew != nullptr) own_crew->return_to_work();
+ThreadPool::Waiting::~Waiting() {
+  if (own_pool != nullptr) own_pool->return_to_work();
 }
 
 }  // namespace signorini::server

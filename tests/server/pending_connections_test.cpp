@@ -1,4 +1,4 @@
-#include "server/http/lobby.hpp"
+#include "server/http/pending_connections.hpp"
 
 #include <condition_variable>
 #include <mutex>
@@ -8,24 +8,24 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace signorini::server::lobby_test {
+namespace signorini::server::pending_connections_test {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// A lobby without a service behind it, whose guests are soon late.
-class InTheLobby : public testing::Test {
+/// Pending connections without a service behind it, whose clients are soon late.
+class PendingConnectionsTest : public testing::Test {
  protected:
-  ~InTheLobby() override {
-    lobby_.stop();
+  ~PendingConnectionsTest() override {
+    pending_.stop();
     for (const int socket : sockets_) ::close(socket);
     ::close(stop_event_);
   }
 
-  static LobbyLimits limits() {
-    LobbyLimits little;
+  static PendingLimits limits() {
+    PendingLimits little;
     little.long_bodies = 200'000;
-    little.arrival = little.let_in = 1s;
+    little.head_time = little.let_in = 1s;
     return little;
   }
 
@@ -34,7 +34,8 @@ class InTheLobby : public testing::Test {
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     sockets_.push_back(ends[0]);
-    lobby_.admit(std::make_shared<Connection>(ends[1], stop_event_, MessageLimits(), slow_readers_, nullptr));
+    pending_.admit(
+        std::make_shared<Connection>(ends[1], stop_event_, MessageLimits(), slow_readers_, nullptr));
     ::send(ends[0], said.data(), said.size(), 0);
     return ends[0];
   }
@@ -44,7 +45,7 @@ class InTheLobby : public testing::Test {
                  std::to_string(declared) + "\r\n\r\n");
   }
 
-  /// The next message that leaves the lobby; one without a method if none does for some seconds.
+  /// The next message that has come whole; one without a method if none does for some seconds.
   Message next() {
     std::unique_lock lock(mutex_);
     if (!came_.wait_for(lock, 10s, [&] { return !messages_.empty(); })) return {};
@@ -56,42 +57,43 @@ class InTheLobby : public testing::Test {
   static int status_of(const Message& message) { return message.refusal ? message.refusal->status : 0; }
 
   const int stop_event_ = eventfd(0, EFD_CLOEXEC);
-  Places slow_readers_{1};
+  Semaphore slow_readers_{1};
   std::vector<int> sockets_;
   std::mutex mutex_;
   std::condition_variable came_;
   std::vector<Message> messages_;
   std::vector<std::shared_ptr<void>> rooms_;
-  Lobby lobby_{limits(), [](Connection&) { return false; },
-               [this](const std::shared_ptr<Connection>& connection, std::shared_ptr<void> room) {
-                 const std::lock_guard lock(mutex_);
-                 messages_.push_back(connection->reader().next());
-                 rooms_.push_back(std::move(room));
-                 came_.notify_one();
-               }};
+  PendingConnections pending_{
+      limits(), [](Connection&) { return false; },
+      [this](const std::shared_ptr<Connection>& connection, std::shared_ptr<void> room) {
+        const std::lock_guard lock(mutex_);
+        messages_.push_back(connection->reader().next());
+        rooms_.push_back(std::move(room));
+        came_.notify_one();
+      }};
 };
 
-TEST_F(InTheLobby, ARequestThatComesTooLateIsRefused) {
+TEST_F(PendingConnectionsTest, ARequestThatComesTooLateIsRefused) {
   enter("GET / HTTP/1.1\r\nHost: l");
   EXPECT_EQ(status_of(next()), 408);
 }
 
 /// RFC 9110, 9.3.2.
-TEST_F(InTheLobby, AHeadThatComesTooLateIsRefusedAsHead) {
+TEST_F(PendingConnectionsTest, AHeadThatComesTooLateIsRefusedAsHead) {
   enter("HEAD / HTTP/1.1\r\nHost: l");
   const Message message = next();
   EXPECT_EQ(status_of(message), 408);
   EXPECT_EQ(message.method, "HEAD");
 }
 
-TEST_F(InTheLobby, ABodyForWhichThereIsNoRoomIsNotCalledLate) {
+TEST_F(PendingConnectionsTest, ABodyForWhichThereIsNoRoomIsNotCalledLate) {
   enter_with_body(90'000);
   enter_with_body(90'000);
   EXPECT_EQ(status_of(next()), 503);
 }
 
 /// Half of what is left is for those who want less.
-TEST_F(InTheLobby, ThereIsRoomForAShorterBody) {
+TEST_F(PendingConnectionsTest, ThereIsRoomForAShorterBody) {
   enter_with_body(90'000);
   enter_with_body(90'000);
   const int socket = enter_with_body(40'000);
@@ -103,7 +105,7 @@ TEST_F(InTheLobby, ThereIsRoomForAShorterBody) {
 }
 
 /// What was kept for the longest body that could come is given back when a shorter one has come.
-TEST_F(InTheLobby, ABodyThatHasComeKeepsTheRoomThatItTakes) {
+TEST_F(PendingConnectionsTest, ABodyThatHasComeKeepsTheRoomThatItTakes) {
   const std::string body(40'000, ' ');
   const int first = enter_with_body(body.size());
   ::send(first, body.data(), body.size(), 0);
@@ -121,4 +123,4 @@ TEST_F(InTheLobby, ABodyThatHasComeKeepsTheRoomThatItTakes) {
 }
 
 }  // namespace
-}  // namespace signorini::server::lobby_test
+}  // namespace signorini::server::pending_connections_test
