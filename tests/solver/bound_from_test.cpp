@@ -105,6 +105,28 @@ TEST(BoundFrom, KnowsLessOfTheSecondPairWhereLoadsAreUncertain) {
   }
 }
 
+/// min(D R, M) with M of Theorem 3, to which what makes up for oscillation and carried loads adds its norm.
+TEST(BoundFrom, IsTheFormulaOfTheTheoremWithASecondPair) {
+  std::mt19937 random(4);
+  for (int run = 0; run < 100; ++run) {
+    Totals totals = with_second_pair(random_totals(random));
+    totals.oscillation_square = 1e-6;
+    totals.carried = 1e-3;
+    totals.all.slack = 1e-4;
+    const TriangleSums& all = totals.all;
+    const double g = std::sqrt(totals.balanced_gap + all.slack) + totals.carried,
+                 d = std::sqrt(totals.balanced_correction + all.slack) + totals.carried, c = totals.contact,
+                 r = std::sqrt(g * g + 2 * c),
+                 k = all.known + totals.carried *
+                                     (2 * std::sqrt(all.moved + all.slack) + std::sqrt(all.span + all.slack)),
+                 m = least_over_the_way(all.correction, all.span, all.along, r, k, all.slack) +
+                     (std::sqrt(totals.oscillation_square) + totals.carried) * r;
+    ASSERT_LT(m, d * r);
+    const double square = c + (g * g + d * d + all.direct_gap + all.slack) / 2 + m + all.skew + all.slack;
+    EXPECT_NEAR(bound_from(totals).value, std::sqrt(square), 1e-12 * std::sqrt(square));
+  }
+}
+
 TEST(BoundFrom, LeavesRoomForRoundingInTheEnergies) {
   Totals totals(1);
   totals.all.energy = 1;

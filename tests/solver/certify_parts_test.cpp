@@ -3,20 +3,16 @@
 #include <random>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
-#include "certify/data/carried_loads.hpp"
 #include "certify/displacement/lift.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
 #include "certify/elasticity/least_airy.hpp"
 #include "certify/elasticity/macro_element.hpp"
 #include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/local_fields.hpp"
-#include "certify/membrane/quadratic_balance.hpp"
 #include "fem/lagrange.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
-#include "run/requested_mesh.hpp"
 #include "solved_problem.hpp"
 
 namespace signorini::certify_parts_test {
@@ -311,41 +307,6 @@ TEST(Lift, IsOffByNoMoreThanItSays) {
     EXPECT_LE(seen, said);
     EXPECT_GE(seen, 0.99 * said);
   }
-}
-
-/// A traction of a membrane that is not known but for ∫ |q| ≤ F may act as a linear one with the force F and
-/// the moment F |e| / 2: √21 F at the three nodes of the edge, and no norm is smaller.
-TEST(CarriedLoads, CountTheMomentsOfATractionOfAMembrane) {
-  Problem problem = problems::paper(Scheme::nonconforming, 1);
-  problem.boundary = {{"left", Fixed{}},
-                      {"right", Fixed{}},
-                      {"bottom", Fixed{}},
-                      {"top", Traction{VectorField(problems::formula("sin(40 * x)"))}}};
-  Observer observer;
-  Progress progress(observer, std::nullopt);
-  const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
-  const Discretization discretization(problem, *mesh);
-  const LawOnMesh laws(problem.material, *mesh, 1e-6, progress);
-  double square = 0;
-  for (int edge = 0; edge < static_cast<int>(mesh->edges.size()); ++edge)
-    if (discretization.traction.acts_on(edge)) {
-      const double force = discretization.traction[edge].uncertain_force;
-      EXPECT_GT(force, 0);
-      square += 21 * force * force;
-    }
-  const Eigen::MatrixXd no_stress =
-      Eigen::MatrixXd::Zero(discretization.spaces().stresses(), discretization.triangles());
-  const ContactPressure no_pressure(discretization, no_stress, Eigen::VectorXd());
-  // ν, and |J| / √det J of the two triangles.
-  const FineTriangleRule& rule = fine_triangle_rule();
-  Eigen::MatrixXd rows(2 * FineTriangleRule::size, QuadraticBalance::kData);
-  for (int q = 0; q < FineTriangleRule::size; ++q)
-    rows.middleRows<2>(2 * q) =
-        std::sqrt(rule.weights[q]) * QuadraticBalance::reference_values(rule.points[q]);
-  const double of_element = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues()[0],
-               of_shape = std::sqrt(2.);
-  EXPECT_GE(carry_uncertain_loads(discretization, laws, no_pressure).norm,
-            of_element * of_shape * std::sqrt(square));
 }
 
 TEST(NearestAdmissible, LiesOnOneConstraintOrInTheCorner) {

@@ -171,9 +171,14 @@ TEST(LinearRemainder, IsThatOfTheReferenceTrianglesHoweverTheyLie) {
       const auto expect = [&]<int D>(std::integral_constant<int, D>) {
         const ReferenceConstants& constants = reference.constants(D);
         EXPECT_NEAR(linear_remainder<D>(corners), 1e9 * constants.load, 1e-6 * 1e9);
-        for (int e = 0; e < 3; ++e)
-          EXPECT_NEAR(linear_remainder_on_edge<D>(corners, e),
-                      std::sqrt(1e9) * constants.on_edges[(first + e) % 3], 1e-6 * std::sqrt(1e9));
+        const MotionRemainder motion = motion_remainder<D>(corners);
+        EXPECT_NEAR(motion.on_triangle, 1e9 * constants.motion.on_triangle, 1e-6 * 1e9);
+        for (int e = 0; e < 3; ++e) {
+          const int there = (first + e) % 3;
+          const double root = std::sqrt(1e9);
+          EXPECT_NEAR(linear_remainder_on_edge<D>(corners, e), root * constants.on_edges[there], 1e-6 * root);
+          EXPECT_NEAR(motion.on_edges[e], root * constants.motion.on_edges[there], 1e-6 * root);
+        }
       };
       expect(std::integral_constant<int, 1>());
       expect(std::integral_constant<int, 2>());

@@ -124,7 +124,7 @@ double integrate_over_contact(const PatchPairs& pairs, const Function& f) {
 
 /// What totals.hpp calls K, s and δ.
 struct Sums {
-  double known, span, correction, rest;
+  double known, span, correction, rest, moved;
 };
 
 Sums sums_of(const PatchPairs& pairs) {
@@ -138,11 +138,11 @@ Sums sums_of(const PatchPairs& pairs) {
       2 * integrate_over_contact(pairs, [&](int i, double at) {
         return on.pressure(pairs.first(), i, at) * on.w(i, at) - on.pi(i, at) * on.room(pairs.first(), i, at);
       });
-  return {
-      by_area + by_contact,
-      integrate_over(pairs, [&](int t, const Point& x) { return s(t, x).squaredNorm(); }),
-      integrate_over(pairs, [&](int t, const Point& x) { return delta(t, x).squaredNorm(); }),
-      integrate_over(pairs, [&](int t, const Point& x) { return (delta(t, x) - s(t, x)).squaredNorm(); })};
+  return {by_area + by_contact,
+          integrate_over(pairs, [&](int t, const Point& x) { return s(t, x).squaredNorm(); }),
+          integrate_over(pairs, [&](int t, const Point& x) { return delta(t, x).squaredNorm(); }),
+          integrate_over(pairs, [&](int t, const Point& x) { return (delta(t, x) - s(t, x)).squaredNorm(); }),
+          integrate_over(pairs, [&](int t, const Point& x) { return on.slope_of_w(t, x).squaredNorm(); })};
 }
 
 /// (e + b, s) is K and what the exact pressure and displacement make of the rest.
@@ -187,6 +187,8 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
       EXPECT_NEAR(totals.all.known, sums.known, 1e-5 * sums.span);
       EXPECT_NEAR(totals.all.span, sums.span, 1e-9 * sums.span);
       EXPECT_NEAR(totals.all.correction, sums.correction, 1e-9 * sums.span);
+      EXPECT_NEAR(totals.all.moved, sums.moved, 1e-9 * sums.span);
+      EXPECT_GT(sums.moved, 1e-3 * sums.span);
       EXPECT_NEAR(sums.correction - 2 * totals.all.along + sums.span, sums.rest, 1e-9 * sums.span);
     }
   }

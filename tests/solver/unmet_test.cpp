@@ -1,0 +1,98 @@
+// Every reason for which a bound is not guaranteed is said, in both models.
+
+#include <gtest/gtest.h>
+
+#include "certify/certificate.hpp"
+#include "certify/elasticity/edge_tractions.hpp"
+#include "problems/elasticity.hpp"
+#include "solved_problem.hpp"
+
+namespace signorini::unmet_test {
+namespace {
+
+Problem membrane() {
+  Problem problem = problems::paper(Scheme::conforming, 2);
+  problem.body = VectorField(-1);
+  problem.boundary["top"] = Traction{VectorField(-1)};
+  return problem;
+}
+
+Problem block() {
+  Problem problem;
+  problem.mesh = {Divisions{2, 2}, Pattern::crossed};
+  problem.material = YoungPoisson{Field(2), Field(0.3), Plane::strain};
+  problem.body = VectorField(0, -1);
+  problem.boundary = {
+      {"left", Fixed{}}, {"bottom", Contact{Field(0.01)}}, {"top", Traction{VectorField(0, -0.1)}}};
+  return problem;
+}
+
+std::vector<std::string> unmet(const Problem& problem) {
+  return solve(problem, {ActiveSet{}, {}}).summary.error_bound.value().unmet;
+}
+
+/// What is known in points only.
+const Field kOne = problems::function([](const Point&) { return 1.; }, "/by/points");
+
+void expect_named(const Problem& problem) {
+  const std::vector<std::string> reasons = unmet(problem);
+  ASSERT_EQ(reasons.size(), 1u);
+  EXPECT_NE(reasons[0].find("/by/points"), std::string::npos) << reasons[0];
+}
+
+TEST(Unmet, IsALoadATractionAGapAFixedValueOrALawThatIsKnownInPointsOnly) {
+  for (const Problem& sound : {membrane(), block()}) {
+    EXPECT_EQ(unmet(sound), std::vector<std::string>());
+    const bool is_body = sound.body.size() == 2;
+    const VectorField by_points = is_body ? VectorField(kOne, kOne) : VectorField(kOne);
+    Problem problem = sound;
+    problem.body = by_points;
+    expect_named(problem);
+    problem = sound;
+    problem.boundary["top"] = Traction{by_points};
+    expect_named(problem);
+    problem = sound;
+    problem.boundary["bottom"] = Contact{kOne};
+    expect_named(problem);
+    problem = sound;
+    problem.boundary["left"] = Fixed{by_points};
+    expect_named(problem);
+    problem = sound;
+    problem.material = is_body ? Material(YoungPoisson{kOne, Field(0.3), Plane::strain})
+                               : Material(MembraneStiffness::isotropic(kOne));
+    expect_named(problem);
+  }
+}
+
+/// The residual of equilibrium that rounding may leave is 1e-9.
+TEST(Unmet, IsAStressThatIsNotInEquilibrium) {
+  for (const Problem& problem : {membrane(), block()})
+    for (const double residual : {0.9e-9, 1.1e-9}) {
+      SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
+      made.solution.summary.residuals.equilibrium = residual;
+      const Eigen::VectorXd coupling = Eigen::VectorXd::Zero(made.discretization.traces.unknowns());
+      const ErrorBound bound = certify(made.discretization, made.solution, coupling, made.progress).bound;
+      ASSERT_EQ(bound.unmet.size(), residual > 1e-9 ? 1u : 0u);
+      EXPECT_EQ(bound.guaranteed, bound.unmet.empty());
+      if (!bound.guaranteed) {
+        EXPECT_NE(bound.unmet[0].find("the stress is not in equilibrium"), std::string::npos);
+      }
+    }
+}
+
+/// Two triangles that have a corner in common, and no more: around it no way meets both.
+TEST(Unmet, IsABodyThatTouchesItselfInAPoint) {
+  Problem problem = block();
+  problem.boundary = {{"ground", Fixed{}}};
+  const Mesh mesh = make_mesh({Point(0, 0), Point(1, 0), Point(0, 1), Point(-1, 0), Point(0, -1)},
+                              {{0, 1, 2}, {0, 3, 4}}, {"ground"}, {{{0, 1}, 0}, {{0, 3}, 0}});
+  const Discretization discretization(problem, mesh);
+  const Eigen::MatrixXd no_stress =
+      Eigen::MatrixXd::Zero(discretization.spaces().stresses(), discretization.triangles());
+  const EdgeTractions tractions(discretization, no_stress, {discretization, no_stress, Eigen::VectorXd()});
+  ASSERT_EQ(tractions.unmet().size(), 1u);
+  EXPECT_NE(tractions.unmet()[0].find("the body touches itself in the point"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace signorini::unmet_test
