@@ -1,8 +1,11 @@
 // The bound where data are not smooth: along sides, at points, or nowhere.
+#include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "fem/traction_field.hpp"
+#include "mesh/rectangle.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
 
@@ -78,6 +81,20 @@ TEST(RoughData, WhatRoundingTakesFromATractionIsInTheBound) {
   EXPECT_TRUE(bound.guaranteed);
   EXPECT_LE(bound.energy_lower, given.energy_lower);
   EXPECT_GE(bound.energy_upper, given.energy_upper);
+}
+
+/// In doubles it is 0, in truth x², of which the norm and the integral on the side are 1/√5 and 1/3.
+TEST(RoughData, WhatRoundingTakesFromATractionCountsWithItsNorm) {
+  Problem problem = square();
+  problem.boundary["top"] = Traction{problems::formula("2e16*(1-cos(1e-8*x))")};
+  const Mesh mesh = rectangle_mesh(Rectangle{}, {1, 1}, Pattern::right);
+  const TractionField traction(problem, mesh);
+  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (!traction.acts_on(edge)) continue;
+    EXPECT_GE(traction[edge].rest, 1 / std::sqrt(5.));
+    EXPECT_GE(traction[edge].uncertain_force, 1. / 3);
+    EXPECT_GE(traction[edge].uncertain_work, 1. / 3);
+  }
 }
 
 TEST(RoughData, GapsFixedValuesAndLawsThatLoseTheirDigitsAreNamed) {

@@ -80,6 +80,18 @@ TEST(Unmet, IsAStressThatIsNotInEquilibrium) {
     }
 }
 
+/// A body that contact alone holds, where p* cannot take what is not known of the load; less of it p* can
+/// take, and the contact term grows with it.
+TEST(Unmet, IsALoadOfWhichTheContactCannotTakeWhatIsNotKnown) {
+  Problem problem = membrane();
+  problem.scheme = Scheme::nonconforming;
+  problem.boundary = {{"bottom", Contact{problems::formula("0.1*x^2")}}, {"top", Contact{Field(0)}}};
+  problem.body = VectorField(problems::formula("-10 + 10*sin(1e7*x*(y + 1.3))"));
+  const std::vector<std::string> reasons = unmet(problem);
+  ASSERT_EQ(reasons.size(), 1u);
+  EXPECT_NE(reasons[0].find("and no fixed part takes the rest"), std::string::npos) << reasons[0];
+}
+
 /// Two triangles that have a corner in common, and no more: around it no way meets both.
 TEST(Unmet, IsABodyThatTouchesItselfInAPoint) {
   Problem problem = block();
