@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "certify/certificate.hpp"
+#include "certify/data/carried_loads.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
 #include "problems/elasticity.hpp"
 #include "solved_problem.hpp"
@@ -90,6 +91,26 @@ TEST(Unmet, IsALoadOfWhichTheContactCannotTakeWhatIsNotKnown) {
   const std::vector<std::string> reasons = unmet(problem);
   ASSERT_EQ(reasons.size(), 1u);
   EXPECT_NE(reasons[0].find("and no fixed part takes the rest"), std::string::npos) << reasons[0];
+}
+
+/// What it can take makes p* larger, and the contact term with it.
+TEST(Guaranteed, IsTheContactTermOfAPressureThatTakesWhatIsNotKnown) {
+  Problem problem = membrane();
+  problem.scheme = Scheme::nonconforming;
+  problem.boundary = {{"bottom", Contact{problems::formula("0.1*x^2")}}, {"top", Contact{Field(0)}}};
+  problem.body = VectorField(-10);
+  const ErrorBound plain = solve(problem, {ActiveSet{}, {}}).summary.error_bound.value();
+  problem.body = VectorField(problems::formula("-10 + 0.2*sin(1e7*x*(y + 1.3))"));
+  const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
+  const ErrorBound bound = made.solution.summary.error_bound.value();
+  EXPECT_TRUE(bound.guaranteed);
+  const LawOnMesh laws(problem.material, made.solution.mesh, 1e-8, made.progress);
+  const double change = carry_uncertain_loads(made.discretization, laws,
+                                              {made.discretization, made.solution.stress, made.clearance})
+                            .change_of_pressure;
+  EXPECT_GT(change, 0.2);
+  const double square = std::pow(plain.parts.contact, 2);
+  EXPECT_NEAR(std::pow(bound.parts.contact, 2), (1 + change) * square, 0.1 * change * square);
 }
 
 /// Two triangles that have a corner in common, and no more: around it no way meets both.
