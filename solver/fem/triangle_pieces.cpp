@@ -174,7 +174,9 @@ class Cutter {
   int longest_side(const Cell& cell) const {
     const Corners corners = physical(cell.corners);
     const auto length = [&](int e) { return (corners[(e + 1) % 3] - corners[(e + 2) % 3]).squaredNorm(); };
-    return std::ranges::max({0, 1, 2}, {}, length);
+    // clang 14 knows no std::ranges::max of a list.
+    constexpr std::array sides{0, 1, 2};
+    return *std::ranges::max_element(sides, {}, length);
   }
 
   /// The polynomial of some field is no better than its values.
@@ -199,7 +201,7 @@ class Cutter {
     };
     const std::array<Doubt, 3> all{left(0), left(1), left(2)};
     const int longest = longest_side(cell),
-              least = std::ranges::min({0, 1, 2}, {}, [&](int e) { return all[e]; });
+              least = static_cast<int>(std::ranges::min_element(all) - all.begin());
     return all[least] < all[longest] ? least : longest;
   }
 
