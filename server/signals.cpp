@@ -55,8 +55,8 @@ StopSignals::StopSignals() {
   sem_init(&arrived, 0, 0);
   stops = hangups = 0;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, note_signal);
-  // A file that may not grow is an error of the write, as on a full disk.
-  handle(SIGXFSZ, SIG_IGN);
+  // A file that may not grow is an error of the write, as on a full disk; so is a log whose reader has left.
+  for (const int signal : {SIGXFSZ, SIGPIPE}) handle(signal, SIG_IGN);
   const sigset_t set = taken_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }

@@ -128,34 +128,66 @@ TEST(StopSignals, EndTheFirstProcessOfAContainerToo) {
   ::kill(first, SIGKILL);
 }
 
-/// A pipe for standard error of which only the beginning is read.
-TEST(Log, ThatNobodyReadsHoldsNoRequest) {
-  const TemporaryDirectory directory;
-  const std::string pipe = directory.path() + "/pipe";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
-  ChildProcess process({"--port", "0", "--data-dir", ":memory:", "--log-level", "debug"}, {},
-                       {"sh", "-c", "exec \"$@\" 2> " + pipe, "sh"});
-  std::string log;
-  const std::string announcement = "listening on http://127.0.0.1:";
-  while (log.find(announcement) == std::string::npos ||
-         log.find('\n', log.find(announcement)) == std::string::npos) {
-    pollfd entry{reader, POLLIN, 0};
-    ASSERT_EQ(::poll(&entry, 1, 60'000), 1) << log;
-    char bytes[512];
-    const ssize_t count = ::read(reader, bytes, sizeof(bytes));
-    if (count > 0) log.append(bytes, static_cast<std::size_t>(count));
-    if (count <= 0) std::this_thread::sleep_for(5ms);
+/// A service whose log goes to a pipe that somebody reads until it listens.
+class PipedLog : public testing::Test {
+ protected:
+  PipedLog() {
+    const std::string announcement = "listening on http://127.0.0.1:";
+    std::string log;
+    while (log.find(announcement) == std::string::npos ||
+           log.find('\n', log.find(announcement)) == std::string::npos) {
+      pollfd entry{reader_, POLLIN, 0};
+      if (::poll(&entry, 1, 60'000) != 1) throw std::runtime_error(log);
+      char bytes[512];
+      const ssize_t count = ::read(reader_, bytes, sizeof(bytes));
+      if (count > 0) log.append(bytes, static_cast<std::size_t>(count));
+      if (count <= 0) std::this_thread::sleep_for(5ms);
+    }
+    port_ = std::atoi(log.c_str() + log.find(announcement) + announcement.size());
   }
-  httplib::Client client("127.0.0.1", std::atoi(log.c_str() + log.find(announcement) + announcement.size()));
-  client.set_keep_alive(true);
-  client.set_read_timeout(10);
+  ~PipedLog() override { ::close(reader_); }
+
+  static int open_pipe(const std::string& pipe) {
+    mkfifo(pipe.c_str(), 0600);
+    return ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  }
+
+  /// Each leaves a line in the log.
+  void expect_replies(int count) {
+    httplib::Client client("127.0.0.1", port_);
+    client.set_keep_alive(true);
+    client.set_read_timeout(10);
+    const std::string path = "/v1/solves?after=" + std::string(150, 'x');
+    for (int i = 0; i < count; ++i) ASSERT_TRUE(client.Get(path)) << "no reply to request " << i;
+  }
+
+  void expect_end() {
+    process_.signal(SIGTERM);
+    EXPECT_EQ(process_.wait(20s), 0);
+  }
+
+  const TemporaryDirectory directory_;
+  const std::string pipe_ = directory_.path() + "/pipe";
+  const int reader_ = open_pipe(pipe_);
+  ChildProcess process_{{"--port", "0", "--data-dir", ":memory:", "--log-level", "debug"},
+                        {},
+                        {"sh", "-c", "exec \"$@\" 2> " + pipe_, "sh"}};
+  int port_ = 0;
+};
+
+TEST_F(PipedLog, ThatNobodyReadsHoldsNoRequest) {
   // Well beyond what a pipe holds, and beyond what is kept.
-  const std::string path = "/v1/solves?after=" + std::string(150, 'x');
-  for (int i = 0; i < 6000; ++i) ASSERT_TRUE(client.Get(path)) << "no reply to request " << i;
-  process.signal(SIGTERM);
-  EXPECT_EQ(process.wait(20s), 0);
-  ::close(reader);
+  expect_replies(6000);
+  expect_end();
+}
+
+/// As a collector of logs does that is started anew.
+TEST_F(PipedLog, WhoseReaderLeavesEndsNothing) {
+  const int nobody = ::open("/dev/null", O_RDONLY);
+  ::dup2(nobody, reader_);
+  ::close(nobody);
+  expect_replies(10);
+  expect_end();
 }
 
 TEST(Ports, ThatKubernetesSetsForAServiceAreNone) {
