@@ -146,6 +146,29 @@ TEST_F(Guests, WhoAskAgainAndAgainAndReadNothing) {
   EXPECT_EQ(read_replies(reader[0].heard(), false).size(), 150u);
 }
 
+/// Each has left, whatever it had said before, and keeps nothing though it stays.
+TEST_F(Guests, WhoCloseTheirSideAndStay) {
+  const std::vector<std::string> said{"",
+                                      "GET /healthz HTTP/1.1\r\nHo",
+                                      "GET /v1/solves HTTP/1.1\r\nHost: localhost\r\n\r\n",
+                                      "GET / HTTP/1.1\r\nHost: a b\r\n\r\n",
+                                      post_head("Content-Length: 500") + "{",
+                                      post_head("Content-Length: 500000") + "{",
+                                      post_head("Transfer-Encoding: chunked") + "5\r\n{",
+                                      post_head("Content-Length: 2") + "{}"};
+  const int before = figures_of(daemon_.process().id()).descriptors;
+  for (const std::string& each : said) {
+    SCOPED_TRACE(each);
+    const std::vector<RawClient> guests = crowd(200, each);
+    for (const RawClient& guest : guests) guest.end_sending();
+    expect_service();
+    const auto until = Clock::now() + 1s * patience;
+    while (figures_of(daemon_.process().id()).descriptors > before + 20 && Clock::now() < until)
+      std::this_thread::sleep_for(10ms);
+    EXPECT_LE(figures_of(daemon_.process().id()).descriptors, before + 20);
+  }
+}
+
 /// A document of some megabytes that takes some tenths of a second to read, in few bytes.
 std::string costly_body() {
   std::string text = R"({"domain": {"type": "mesh", "points": [[0, 0])";

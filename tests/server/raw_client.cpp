@@ -39,6 +39,10 @@ bool RawClient::send(const std::string& bytes) const {
   return ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
 }
 
+void RawClient::end_sending() const {
+  ::shutdown(socket_, SHUT_WR);
+}
+
 void RawClient::receive() {
   std::array<char, 64 * 1024> bytes;
   while (!closed_) {

@@ -19,6 +19,8 @@ class RawClient {
   void turn_deaf() const;
   /// False if the service does not take it any more.
   bool send(const std::string& bytes) const;
+  /// Says that nothing more comes, and stays.
+  void end_sending() const;
   /// Takes what has come, without waiting.
   void receive();
   void close();
