@@ -49,6 +49,9 @@ class Estimation {
   }
 
   Counts count();
+  template <typename EdgesOfPart>
+  void cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+           const EdgesOfPart& edges_of);
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
@@ -57,7 +60,20 @@ class Estimation {
   const PredictedSizes predicted_;
   std::vector<const Condition*> conditions_;  ///< of the parts
   std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
+  std::optional<MeshPieces> pieces_;          ///< of a mesh that is made, or given
 };
+
+/// The pieces of a mesh; `edges_of(part)` has pairs of points.
+template <typename EdgesOfPart>
+void Estimation::cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+                     const EdgesOfPart& edges_of) {
+  std::vector<MeshPieces::Edges> edges;
+  for (std::size_t part = 0; part < conditions_.size(); ++part) edges.push_back(edges_of(part));
+  std::vector<std::pair<const Condition*, const MeshPieces::Edges*>> boundary;
+  for (std::size_t part = 0; part < conditions_.size(); ++part)
+    boundary.emplace_back(conditions_[part], &edges[part]);
+  pieces_.emplace(points, triangles, boundary, components(problem_.material));
+}
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
   // The sides in a ring, so that the neighbours of a side are the ones before and after it.
@@ -107,6 +123,18 @@ Counts Estimation::count() {
   if (mesh) {
     may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
     sizes = sizes_of(*mesh);
+  }
+  if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
+    if (!pieces_)
+      cut(data->points, data->triangles, [&](std::size_t part) { return data->boundary[part].second; });
+  } else if (mesh) {
+    cut(mesh->points, mesh->triangles, [&](std::size_t part) {
+      MeshPieces::Edges edges;
+      for (const int edge : mesh->boundary[part].edges) edges.push_back(mesh->edges[edge]);
+      return edges;
+    });
+  } else {
+    pieces_.reset();
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {
@@ -164,7 +192,7 @@ Estimate Estimation::operator()() {
   const double n = static_cast<double>(estimate.system),
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
-  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact};
+  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);

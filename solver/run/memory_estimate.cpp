@@ -23,81 +23,29 @@ bool is_uniform(const VectorField& field) {
   return std::ranges::all_of(field.fields(), &Field::is_constant);
 }
 
-/// Squares of a size, each of a few triangles.
-struct Grid {
-  double x, y;
-  double width, height;  ///< of a square
-  bool is_regular;
-};
+/// A grid of squares of a rectangle, of which few triangles differ.
+bool is_regular(const Problem& problem) {
+  return std::holds_alternative<Rectangle>(problem.domain) && !problem.mesh.adaptive;
+}
 
 Grid grid_of(const Problem& problem, double triangles) {
-  const auto* rectangle = std::get_if<Rectangle>(&problem.domain);
-  if (!rectangle || problem.mesh.adaptive) {
+  if (!is_regular(problem)) {
     const double n = std::sqrt(triangles / 2);
     return {n, n, 1, 1, false};
   }
-  const Divisions squares = divisions(*rectangle, problem.mesh);
+  const auto& rectangle = std::get<Rectangle>(problem.domain);
+  const Divisions squares = divisions(rectangle, problem.mesh);
   const double refined = std::exp2(problem.mesh.refine), x = squares.x * refined, y = squares.y * refined;
-  return {x, y, rectangle->size.x() / x, rectangle->size.y() / y, true};
+  return {x, y, rectangle.size.x() / x, rectangle.size.y() / y, true};
 }
 
-/// A direction of the pieces into which a dissection cuts a grid.
-struct Direction {
-  double squares;        ///< of one piece
-  double pieces = 1;     ///< side by side
-  bool straight = true;  ///< all cuts so far went between squares
-
-  void halve(bool is_regular) {
-    straight = straight && is_regular && std::fmod(squares, 2) == 0;
-    squares /= 2;
-    pieces *= 2;
-  }
-  /// Of the two sides that a piece has along this direction's cuts those that are not on the boundary.
-  double inner_sides() const { return 2 * (pieces - 1) / pieces; }
-};
-
-/// What a cut through squares takes more edges, and what the sides of a piece have more, than those between
-/// squares.
-constexpr double kThrough = 1.5, kRagged = 1.3;
-
-struct Factor {
-  double panels = 0, fronts = 0;  ///< bytes of L, and of the numbers of its unknowns
-  double stacks = 0;              ///< bytes of what pieces leave, while it is made
-};
-
-/// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
-Factor factor(const Grid& grid, const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double least_in_leaf = 8;
-  const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
-  const int levels = static_cast<int>(std::log2(std::max(1., sizes.triangles / least_in_leaf)));
-  Direction x{grid.x}, y{grid.y};
-  Factor all;
-  for (int level = 0; level <= levels; ++level) {
-    const double pieces = std::exp2(level);
-    const double sides = (x.straight ? 1 : kRagged) * x.inner_sides() * y.squares +
-                         (y.straight ? 1 : kRagged) * y.inner_sides() * x.squares;
-    const bool along_x = x.squares * grid.width >= y.squares * grid.height;
-    double pivots = 0;
-    if (level < levels) {
-      Direction cut = along_x ? x : y;
-      cut.halve(grid.is_regular);
-      pivots = (cut.straight ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
-    } else {
-      const double triangles = sizes.triangles / pieces;
-      pivots =
-          std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
-    }
-    const double rest = sides * (per_edge + per_point) + sizes.contact / pieces;
-    all.panels += kNumber * pieces * pivots * (pivots + rest);
-    all.fronts += kIndex * pieces * (pivots + rest);
-    // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
-    const double most = (x.straight ? 1 : kRagged) * std::min(2., x.pieces - 1) * y.squares +
-                        (y.straight ? 1 : kRagged) * std::min(2., y.pieces - 1) * x.squares;
-    const double largest = most * (per_edge + per_point) + sizes.contact / x.pieces;
-    all.stacks += kNumber * (level > 0 ? 2 : 1) * largest * largest;
-    (along_x ? x : y).halve(grid.is_regular);
-  }
-  return all;
+FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  const FactorBytes by_grid =
+      factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact);
+  if (sizes.pieces == nullptr || sizes.pieces->empty()) return by_grid;
+  const FactorBytes by_pieces = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
+  // Where a mesh refines itself is not known: it may come to be either.
+  return problem.mesh.adaptive ? larger(by_grid, by_pieces) : by_pieces;
 }
 
 /// Of a triangle: points, corners, edges and who has them.
@@ -164,13 +112,12 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
 }
 
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  const Grid grid = grid_of(problem, sizes.triangles);
-  const Factor made = factor(grid, spaces, sizes);
+  const FactorBytes made = factor_of(problem, spaces, sizes);
   const double complement = kNumber * sizes.contact * sizes.contact;
   const double kept = made.panels + kGrowth * made.fronts + complement +
                       sizes.triangles * (kMesh + discretization(problem, spaces));
   const double right = kNumber * sizes.system;
-  const bool shares = grid.is_regular && is_constant(problem.material);
+  const bool shares = is_regular(problem) && is_constant(problem.material);
   const double factoring = made.stacks + complement + right + sizes.triangles * element_sum(spaces, shares);
   // The fields as they were found, the solution, and what is made on the way to it.
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
@@ -184,7 +131,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
 }
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  const Factor made = factor(grid_of(problem, sizes.triangles), spaces, {sizes.triangles, sizes.system, 0});
+  const FactorBytes made = factor_of(problem, spaces, {sizes.triangles, sizes.system, 0, sizes.pieces});
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "factor_estimate.hpp"
 #include "fem/scheme.hpp"
 #include "problem/problem.hpp"
 
@@ -8,17 +9,17 @@ namespace signorini {
 /// The numbers by which the memory of a solve goes.
 struct SolveSizes {
   double triangles = 0;
-  double system = 0;   ///< unknowns of the SPD system
-  double contact = 0;  ///< contact unknowns
+  double system = 0;                   ///< unknowns of the SPD system
+  double contact = 0;                  ///< contact unknowns
+  const MeshPieces* pieces = nullptr;  ///< of the mesh, or of one that it comes from, where there is one
 };
 
 /// What a solve takes, in bytes, at its peaks: while it factors, and while it certifies. It takes no more,
-/// and on grids of squares and on meshes of triangles that are about as wide as long more than half of it,
-/// but for some megabytes of tables that not every solve has. The constants are sizes of what is allocated a
-/// triangle, an unknown or a solve.
+/// and more than half of it, but for some megabytes of tables that not every solve has. The constants are
+/// sizes of what is allocated a triangle, an unknown or a solve.
 ///
-/// The factor is that of system/dissection.hpp on a grid of the given divisions. A mesh that is no grid
-/// counts as a square one: what one of triangles that are much longer than wide takes is not foreseen.
+/// The factor is that of system/dissection.hpp: of the pieces of the mesh, or of a grid of the divisions. A
+/// polygon whose mesh is still to be made counts as a square grid.
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);
 
 /// The same while the paper's iteration runs.

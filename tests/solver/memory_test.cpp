@@ -1,7 +1,9 @@
 // The predicted memory bounds what a solve takes, and is hardly ever more than twice as much.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
@@ -86,6 +88,83 @@ TEST_P(Memory, OfOtherMeshesAndLaws) {
   varying.material = YoungPoisson{problems::formula("3 + x"), Field(0.3), Plane::strain};
   varying.body = VectorField(problems::formula("sin(x)"), Field(-1));
   expect_bound(varying, {ActiveSet{}, std::nullopt}, tables_of_laws);
+}
+
+/// Squares of the unit square, or of one that its points are moved to, as a client gives them.
+MeshData imported(int x, int y, const std::function<Point(double, double)>& at) {
+  MeshData data;
+  const auto number = [x](int i, int j) { return j * (x + 1) + i; };
+  for (int j = 0; j <= y; ++j)
+    for (int i = 0; i <= x; ++i) data.points.push_back(at(1. * i / x, 1. * j / y));
+  std::vector<std::array<int, 2>> left, right, bottom, top;
+  for (int j = 0; j < y; ++j) {
+    for (int i = 0; i < x; ++i) {
+      data.triangles.push_back({number(i, j), number(i + 1, j), number(i + 1, j + 1)});
+      data.triangles.push_back({number(i, j), number(i + 1, j + 1), number(i, j + 1)});
+    }
+    left.push_back({number(0, j), number(0, j + 1)});
+    right.push_back({number(x, j), number(x, j + 1)});
+  }
+  for (int i = 0; i < x; ++i) {
+    bottom.push_back({number(i, 0), number(i + 1, 0)});
+    top.push_back({number(i, y), number(i + 1, y)});
+  }
+  data.boundary = {{"left", left}, {"right", right}, {"bottom", bottom}, {"top", top}};
+  return data;
+}
+
+Point stays(double x, double y) {
+  return {x, y};
+}
+
+/// Cuts go through the long sides of triangles that are a hundred times as long as high. What a formula says
+/// of them may be four times as much.
+TEST_P(Memory, OfSliversIsNotExceeded) {
+  for (const auto& [x, y] : {std::pair{4, 250}, {250, 4}}) {
+    const Problem problem = membrane(GetParam(), x, y);
+    EXPECT_LE(static_cast<double>(solve(problem).summary.peak_memory_bytes), estimate(problem).memory_bytes);
+  }
+}
+
+TEST_P(Memory, OfImportsIsThatOfTheirPieces) {
+  const int many = long_tests() ? 1000 : 200;
+  const auto turned = [](double x, double y) { return Point(x - y, x + y); };
+  const auto graded = [](double x, double y) { return Point(std::expm1(14 * x), y); };
+  const std::vector<MeshData> meshes{
+      imported(8, many, stays), imported(many, 8, stays), imported(8, many, turned), imported(40, 40, graded),
+      imported(many, 8, [many](double x, double y) { return Point(many * x, 8 * y); })};
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    SCOPED_TRACE(i);
+    Problem problem = membrane(GetParam(), 1, 1);
+    problem.domain = meshes[i];
+    expect_bound(problem);
+    problem = elastic(GetParam(), 1, 1);
+    problem.domain = meshes[i];
+    if (i == 0 || long_tests()) expect_bound(problem);
+  }
+}
+
+TEST_P(Memory, OfRefinedImportsIsThatOfTheirPieces) {
+  for (const int many : {16, 250}) {
+    SCOPED_TRACE(many);
+    Problem problem = membrane(GetParam(), 1, 1);
+    problem.domain = imported(many == 16 ? 16 : 4, many, stays);
+    problem.mesh.refine = long_tests() ? 2 : 1;
+    expect_bound(problem);
+  }
+}
+
+/// A mesh that nobody has looked at may be anything.
+TEST(MemoryOfImports, IsToldOfFaultyOnesToo) {
+  MeshData data = imported(80, 80, stays);
+  data.triangles[7] = {-1, 2, 1'000'000};
+  Problem problem = membrane(Scheme::conforming, 1, 1);
+  problem.domain = data;
+  EXPECT_GT(estimate(problem).memory_bytes, 1e6);
+  data = imported(80, 80, [](double, double) { return Point(0, 0); });
+  problem.mesh.refine = 1;
+  problem.domain = data;
+  EXPECT_GT(estimate(problem).memory_bytes, 1e6);
 }
 
 TEST_P(Memory, OfASweepCountsItsEntries) {

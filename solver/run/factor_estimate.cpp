@@ -1,0 +1,231 @@
+#include "factor_estimate.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "mesh/edge_table.hpp"
+#include "progress/observer.hpp"
+#include "progress/progress.hpp"
+#include "system/dissection.hpp"
+
+namespace signorini {
+namespace {
+
+constexpr double kValue = sizeof(double), kUnknown = sizeof(int);
+
+/// A direction of the pieces into which a dissection cuts squares.
+struct Direction {
+  double squares;        ///< of one piece
+  double width;          ///< of a square
+  bool has_neighbours;   ///< the whole, on both sides
+  double pieces = 1;     ///< side by side
+  bool straight = true;  ///< all cuts so far went between squares
+
+  void halve(bool is_regular) {
+    straight = straight && is_regular && std::fmod(squares, 2) == 0;
+    squares /= 2;
+    pieces *= 2;
+  }
+  double extent() const { return squares * width; }
+  /// Of the two sides that a piece has along this direction's cuts those that are not on the boundary.
+  double inner_sides() const { return has_neighbours ? 2 : 2 * (pieces - 1) / pieces; }
+  /// The same of the piece with the most.
+  double most_inner_sides() const { return has_neighbours ? 2 : std::min(2., pieces - 1); }
+};
+
+/// What a cut through squares takes more edges, and what the sides of a piece have more, than those between
+/// squares.
+constexpr double kThrough = 1.5, kRagged = 1.3;
+
+/// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
+FactorBytes of_squares(Direction x, Direction y, bool is_regular, const Spaces& spaces, double all_triangles,
+                       double contact) {
+  constexpr double least_in_leaf = 8;
+  const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
+  const int levels = static_cast<int>(std::log2(std::max(1., all_triangles / least_in_leaf)));
+  FactorBytes all;
+  for (int level = 0; level <= levels; ++level) {
+    const double pieces = std::exp2(level);
+    const double ragged_x = x.straight ? 1 : kRagged, ragged_y = y.straight ? 1 : kRagged;
+    const double sides = ragged_x * x.inner_sides() * y.squares + ragged_y * y.inner_sides() * x.squares;
+    const bool along_x = x.extent() >= y.extent();
+    double pivots = 0;
+    if (level < levels) {
+      Direction cut = along_x ? x : y;
+      cut.halve(is_regular);
+      pivots = (cut.straight ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
+    } else {
+      const double triangles = all_triangles / pieces;
+      pivots =
+          std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
+    }
+    const double rest = sides * (per_edge + per_point) + contact / pieces;
+    all.panels += kValue * pieces * pivots * (pivots + rest);
+    all.fronts += kUnknown * pieces * (pivots + rest);
+    // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
+    const double most =
+        ragged_x * x.most_inner_sides() * y.squares + ragged_y * y.most_inner_sides() * x.squares;
+    const double largest = most * (per_edge + per_point) + contact / x.pieces;
+    all.stacks += kValue * (level > 0 ? 2 : 1) * largest * largest;
+    (along_x ? x : y).halve(is_regular);
+  }
+  return all;
+}
+
+/// The components of the trace that are unknown on an edge.
+int traces_on(const Condition* condition, int components) {
+  if (condition == nullptr) return components;
+  if (std::holds_alternative<Fixed>(*condition)) return 0;
+  const bool normal_is_known =
+      std::holds_alternative<Roller>(*condition) || std::holds_alternative<Contact>(*condition);
+  return normal_is_known ? components - 1 : components;
+}
+
+bool exist(const std::array<int, 3>& numbers, const std::vector<Point>& points) {
+  return std::ranges::all_of(numbers, [&](int i) { return i >= 0 && i < static_cast<int>(points.size()); });
+}
+
+std::array<int, 2> ascending(const std::array<int, 2>& edge) {
+  return {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
+}
+
+}  // namespace
+
+FactorBytes larger(const FactorBytes& a, const FactorBytes& b) {
+  return {std::max(a.panels, b.panels), std::max(a.fronts, b.fronts), std::max(a.stacks, b.stacks)};
+}
+
+FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns) {
+  return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular, spaces,
+                    triangles, contact_unknowns);
+}
+
+MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+                       const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components)
+    : triangles_(static_cast<double>(triangles.size())) {
+  if (!std::ranges::all_of(triangles, [&](const auto& triangle) { return exist(triangle, points); })) return;
+  std::vector<std::pair<std::array<int, 2>, const Condition*>> conditions;
+  for (const auto& [condition, edges] : boundary)
+    for (const auto& edge : *edges) conditions.emplace_back(ascending(edge), condition);
+  std::ranges::sort(conditions);
+
+  // The unknowns of the dissection: an edge each, a point each, and those edges again that are contact.
+  constexpr int nowhere = -1, edges_at = 0, points_at = 3, contact_at = 6;
+  ElementSum sum;
+  sum.per_element = 9;
+  sum.unknowns.assign(9 * triangles.size(), nowhere);
+  sum.matrix_of.resize(triangles.size());
+  const auto place = [&](int triangle, int kind) {
+    return std::find(sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind,
+                     sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind + 2, nowhere);
+  };
+  std::vector<int> traces, contact;
+  EdgeTable(triangles).for_each_edge([&](const auto& sides) {
+    const auto known =
+        std::ranges::lower_bound(conditions, sides[0].points, {}, &decltype(conditions)::value_type::first);
+    const Condition* const condition =
+        sides.size() == 1 && known != conditions.end() && known->first == sides[0].points ? known->second
+                                                                                          : nullptr;
+    if (const int unknown = traces_on(condition, components); unknown > 0) {
+      for (const TriangleEdge& side : sides)
+        *place(side.triangle, edges_at) = static_cast<int>(traces.size());
+      traces.push_back(unknown);
+    }
+    if (condition != nullptr && std::holds_alternative<Contact>(*condition))
+      contact.push_back(sides[0].triangle);
+  });
+  const int with_traces = static_cast<int>(traces.size());
+  const int with_rotation = components == 2 ? static_cast<int>(points.size()) : 0;
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    sum.centres.push_back((points[a] + points[b] + points[c]) / 3);
+    for (int i = 0; i < 3 && with_rotation > 0; ++i)
+      sum.unknowns[9 * static_cast<std::size_t>(t) + points_at + i] = with_traces + triangles[t][i];
+  }
+  for (int i = 0; i < static_cast<int>(contact.size()); ++i)
+    *place(contact[i], contact_at) = with_traces + with_rotation + i;
+  sum.size = with_traces + with_rotation + static_cast<int>(contact.size());
+  contact_edges_ = static_cast<double>(contact.size());
+
+  Observer nobody;
+  Progress progress(nobody, {});
+  const Dissection dissection(sum, static_cast<int>(contact.size()), progress);
+  const auto share_of = [&](std::span<const int> unknowns) {
+    Share share;
+    for (const int unknown : unknowns) {
+      if (unknown < with_traces)
+        share.traces += traces[unknown];
+      else
+        (unknown < with_traces + with_rotation ? share.points : share.contact) += 1;
+    }
+    return share;
+  };
+  dissection.for_each_piece([&](int piece) {
+    const Dissection::Front front = dissection.front(piece);
+    pieces_.push_back({share_of(front.unknowns.first(front.pivots)), share_of(front.remaining()),
+                       static_cast<int>(std::bit_width(static_cast<unsigned>(piece)) % 2),
+                       dissection.is_leaf(piece), Vector(1, 1), 1});
+    if (!dissection.is_leaf(piece)) return;
+    Eigen::AlignedBox2d all;
+    Vector sum_of_own = Vector::Zero();
+    for (const int t : dissection.elements(piece)) {
+      Eigen::AlignedBox2d own;
+      for (const int point : triangles[t]) own.extend(points[point]);
+      all.extend(own);
+      sum_of_own += own.sizes();
+    }
+    pieces_.back().extent = all.sizes();
+    // Triangles without a width are for the solve to refuse.
+    if (sum_of_own.minCoeff() > 0)
+      pieces_.back().across = all.sizes().x() / sum_of_own.x() / (all.sizes().y() / sum_of_own.y());
+  });
+}
+
+/// A leaf with so many triangles more than a leaf has: its squares are cut as it lies there.
+FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double triangles,
+                               double contact) const {
+  const double x = std::sqrt(triangles / 2 * leaf.across), y = triangles / 2 / x;
+  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, spaces, triangles,
+                    contact);
+}
+
+FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns) const {
+  const double growth = std::sqrt(triangles / triangles_),
+               leaves = static_cast<double>(pieces_.size() + 1) / 2;
+  const double per_contact = contact_edges_ > 0 ? contact_unknowns / contact_edges_ : 0;
+  const auto free = [&](const Share& share) {
+    return growth * ((spaces.order + 1) * share.traces + share.points);
+  };
+  FactorBytes all;
+  double stacks_of_leaf = 0;
+  std::array<double, 2> stacks{}, largest{};
+  std::vector<double> left;  // by pieces that the piece around them has not taken in yet
+  for (const Piece& piece : pieces_) {
+    const double rim = free(piece.rim) + per_contact * piece.rim.contact;
+    if (piece.is_leaf && growth > 1) {
+      const FactorBytes inside = within(piece, spaces, triangles / leaves, per_contact * piece.rim.contact);
+      all.panels += inside.panels;
+      all.fronts += inside.fronts;
+      stacks_of_leaf = std::max(stacks_of_leaf, inside.stacks);
+    } else {
+      const double pivots = free(piece.cut);
+      all.panels += kValue * pivots * (pivots + rim);
+      all.fronts += kUnknown * (pivots + rim);
+    }
+    // As Cholesky's two stacks: one for a piece, the other for its halves.
+    stacks[piece.parity] += rim * rim;
+    largest[piece.parity] = std::max(largest[piece.parity], stacks[piece.parity]);
+    for (int half = 0; half < 2 && !piece.is_leaf; ++half) {
+      stacks[1 - piece.parity] -= left.back();
+      left.pop_back();
+    }
+    left.push_back(rim * rim);
+  }
+  all.stacks = kValue * (largest[0] + largest[1]) + stacks_of_leaf;
+  return all;
+}
+
+}  // namespace signorini

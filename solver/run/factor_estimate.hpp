@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "fem/scheme.hpp"
+#include "mesh/mesh.hpp"
+#include "problem/problem.hpp"
+
+namespace signorini {
+
+/// What a factor (system/cholesky.hpp) takes, in bytes.
+struct FactorBytes {
+  double panels = 0;  ///< of L
+  double fronts = 0;  ///< of the numbers of its unknowns
+  double stacks = 0;  ///< of what pieces leave, while it is made
+};
+
+/// The larger of each.
+FactorBytes larger(const FactorBytes& a, const FactorBytes& b);
+
+/// Squares of a size, each of a few triangles.
+struct Grid {
+  double x, y;
+  double width, height;  ///< of a square
+  bool is_regular;       ///< that cuts may go between squares
+};
+
+/// From a formula for a dissection of squares.
+FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns);
+
+/// The pieces into which the dissection cuts a mesh (system/dissection.hpp), which are made for it without
+/// any matrix: however long and thin the triangles are, whatever joins them.
+class MeshPieces {
+ public:
+  using Edges = std::vector<std::array<int, 2>>;  ///< as pairs of points
+
+  /// The edges of each condition that there is on the boundary. A mesh that nobody has checked may have
+  /// numbers of points that do not exist: then there are no pieces.
+  MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+             const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components);
+
+  bool empty() const { return pieces_.empty(); }
+
+  /// Of the mesh with so many triangles, by uniform refinements or about such, and so many contact unknowns.
+  FactorBytes factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns) const;
+
+ private:
+  /// What lies on a cut, or on the rim of a piece.
+  struct Share {
+    double traces = 0;   ///< components of the trace that are unknown, on all edges
+    double points = 0;   ///< with a rotation
+    double contact = 0;  ///< edges
+  };
+  struct Piece {
+    Share cut, rim;
+    int parity;  ///< of its depth
+    bool is_leaf;
+    Vector extent;  ///< of a leaf,
+    double across;  ///< and by how many times more triangles lie along x than along y
+  };
+  FactorBytes within(const Piece& leaf, const Spaces& spaces, double triangles, double contact) const;
+
+  double triangles_, contact_edges_ = 0;
+  std::vector<Piece> pieces_;  ///< the halves before the whole
+};
+
+}  // namespace signorini
