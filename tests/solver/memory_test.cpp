@@ -137,6 +137,7 @@ TEST_P(Memory, OfImportsIsThatOfTheirPieces) {
     SCOPED_TRACE(i);
     Problem problem = membrane(GetParam(), 1, 1);
     problem.domain = meshes[i];
+    problem.body = Field(-10);
     expect_bound(problem);
     problem = elastic(GetParam(), 1, 1);
     problem.domain = meshes[i];
@@ -148,6 +149,7 @@ TEST_P(Memory, OfRefinedImportsIsThatOfTheirPieces) {
   for (const int many : {16, 250}) {
     SCOPED_TRACE(many);
     Problem problem = membrane(GetParam(), 1, 1);
+    problem.body = Field(-10);
     problem.domain = imported(many == 16 ? 16 : 4, many, stays);
     problem.mesh.refine = long_tests() ? 2 : 1;
     expect_bound(problem);
