@@ -29,6 +29,15 @@ double largest_edge(const Mesh& mesh) {
   return longest;
 }
 
+/// Throws SolveError unless all that are known are numbers.
+void require_finite(const TrueErrors& errors) {
+  for (const auto& error :
+       {errors.displacement, errors.stress, errors.energy_norm, errors.energy, errors.total})
+    if (error && !std::isfinite(*error))
+      throw SolveError(
+          "the errors against the exact solution leave the range of double precision: look at `exact`");
+}
+
 StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solution, Observer& observer) {
   const Summary& summary = solution.summary;
   StudyRow row;
@@ -39,6 +48,7 @@ StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solu
   row.energy = summary.energy;
   row.error_bound = summary.error_bound;
   row.errors = true_errors(problem, exact, solution, observer);
+  require_finite(row.errors);
   row.iterations = summary.iterations;
   row.seconds = summary.timings.total;
   return row;

@@ -222,6 +222,15 @@ TEST(Study, ARunThatFailsDoesNotEndTheOthers) {
   EXPECT_FALSE(observed_rate(rows, 1, bound_of));
 }
 
+/// No document takes a number that is infinite.
+TEST(Study, ARowWithoutFiniteErrorsSaysSo) {
+  Study study{{Scheme::nonconforming}, squares({{4, 4}}), exact_edge()};
+  study.exact.stress[0] = Field(-1e308);
+  const std::vector<StudyRow> rows = run(problems::paper(Scheme::nonconforming, 4), study);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_NE(rows[0].error.find("leave the range"), std::string::npos) << rows[0].error;
+}
+
 TEST(Study, TheTimeLimitIsForTheWhole) {
   const Study study{{Scheme::nonconforming}, squares({{4, 4}, {4, 4}}), {}};
   Observer indifferent;
