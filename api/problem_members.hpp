@@ -54,7 +54,8 @@ std::vector<std::string> read_tags(const Value& value);
 /// What is wrong with a text as a tag; nothing if nothing is.
 std::optional<std::string> fault_of_tag(const std::string& text);
 
-/// Merge patches (RFC 7396) of the document's load and boundary data; the problem is what was read of it.
+/// Merge patches (RFC 7396) of the document's load, material and boundary data; the problem is what was read
+/// of it.
 std::vector<Variation> read_sweep(const Value& value, const Object& document, const Problem& problem);
 
 /// Its meshes are the document's with another fineness; the problem is what was read of it.

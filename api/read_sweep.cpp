@@ -15,8 +15,9 @@ void allow_only(const Object& object, const std::vector<std::string_view>& names
   for (const auto& [name, member] : object.members())
     if (std::ranges::find(names, name) == names.end())
       member.fault(
-          "cannot change within a sweep, which solves every entry by one operator: that depends on "
-          "all but the loads, gaps and boundary values; allowed are here: " +
+          "cannot change within a sweep, all entries of which have one mesh, one scheme and conditions of "
+          "the "
+          "same kinds; allowed are here: " +
           list_of(names));
 }
 
@@ -36,12 +37,18 @@ void check_conditions(const Value& value, const json& boundary) {
 void check_patch(const Value& value, const json& boundary) {
   const auto patch = value.object();
   if (!patch) return;
-  allow_only(*patch, {"title", "load", "boundary"});
+  allow_only(*patch, {"title", "load", "boundary", "material"});
   if (const auto conditions = patch->find("boundary")) check_conditions(*conditions, boundary);
 }
 
+/// The members of the problem that an entry may change.
+struct Varied {
+  const json load, boundary, material;
+};
+
 /// Reads again what the patch touches; the rest is the problem's.
-Variation read_variation(const Value& patch, const json& load, const json& boundary, const Problem& problem) {
+Variation read_variation(const Value& patch, const Varied& posed, const Problem& problem) {
+  const auto& [load, boundary, material] = posed;
   const Model model = components(problem.material) == 1 ? Model::membrane : Model::elasticity;
   Variation variation{"", problem.body, problem.boundary, load_key(patch.json())};
   const Object changes = *patch.object();
@@ -51,6 +58,14 @@ Variation read_variation(const Value& patch, const json& load, const json& bound
     json merged = load;
     merged.merge_patch(member->json());
     variation.body = merged.is_null() ? VectorField() : read_load(member->instead(merged), model);
+  }
+  if (const auto member = changes.find("material")) {
+    json merged = material;
+    merged.merge_patch(member->json());
+    if (merged != material) {
+      variation.material = read_material(member->instead(merged), model);
+      variation.material_key = merged.dump();
+    }
   }
   if (const auto member = changes.find("boundary")) {
     json merged = json::object();
@@ -75,7 +90,8 @@ std::vector<Variation> read_sweep(const Value& value, const Object& document, co
   const std::vector<Value> patches =
       value.list("an array of changes, each an object as the problem itself", limits::sweep_entries);
   if (value.json().is_array() && value.json().empty()) value.fault("must have at least one entry");
-  const auto boundary = document.find("boundary"), load = document.find("load");
+  const auto boundary = document.find("boundary"), load = document.find("load"),
+             material = document.find("material");
   if (!boundary || !boundary->json().is_object()) return {};
   if (patches.size() * problem.boundary.size() > limits::sweep_conditions)
     value.fault("has " + std::to_string(patches.size()) + " entries with " +
@@ -89,9 +105,10 @@ std::vector<Variation> read_sweep(const Value& value, const Object& document, co
   // What is wrong already would be wrong in every entry again.
   std::vector<Variation> sweep;
   if (value.faults().has_any_at("")) return sweep;
+  const Varied posed{load ? load->json() : json(), boundary->json(), material ? material->json() : json()};
   for (const Value& patch : patches) {
     if (value.faults().is_full()) break;
-    sweep.push_back(read_variation(patch, load ? load->json() : json(), boundary->json(), problem));
+    sweep.push_back(read_variation(patch, posed, problem));
   }
   return sweep;
 }

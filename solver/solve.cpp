@@ -13,6 +13,12 @@
 namespace signorini {
 namespace {
 
+std::string in_words(const NotPositiveDefinite& failure) {
+  return std::string(failure.what()) +
+         ": the stiffness varies too strongly over the mesh, or its triangles are too thin; check the "
+         "material and its units, and the sizes of the domain";
+}
+
 /// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
 template <typename SolveOne>
 void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, Observer& observer,
@@ -25,6 +31,8 @@ void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, O
       entry = solve_one(variation, progress);
     } catch (const SolveError& failure) {
       entry.error = failure.what();
+    } catch (const NotPositiveDefinite& failure) {
+      entry.error = in_words(failure);
     } catch (const InvalidProblem& invalid) {
       entry.error = invalid.faults().front().where + " " + invalid.faults().front().detail;
     }
@@ -68,7 +76,7 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
   Solution solution = solve_paper_form(problem, settings, progress);
   Problem varied = problem;
   sweep_over(sweep, settings, observer, progress, solution, [&](const Variation& variation, Progress& own) {
-    apply(variation, varied);
+    apply(variation, problem, varied);
     return entry_of(iterate_paper_form(varied, settings, own));
   });
   return solution;
@@ -88,10 +96,7 @@ Solution solve(const Problem& problem, const std::vector<Variation>& sweep, cons
     solution.summary.peak_memory_bytes = memory.peak();
     return solution;
   } catch (const NotPositiveDefinite& failure) {
-    throw SolveError(
-        std::string(failure.what()) +
-        ": the stiffness varies too strongly over the mesh, or its triangles are too thin; check the "
-        "material and its units, and the sizes of the domain");
+    throw SolveError(in_words(failure));
   } catch (const OutOfMemory& failure) {
     throw SolveError(std::string(failure.what()) + ": use a coarser mesh or a machine with more memory");
   }

@@ -42,6 +42,13 @@ std::vector<Estimate> estimate(const Problem& problem, const Study& study,
 /// The same by a method, with so many entries of a sweep.
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries = 0);
 
+/// How often a sweep makes the operator of another material.
+std::size_t operators_of(const std::vector<Variation>& sweep);
+
+/// The problem with its sweep, by a method: memory while the operator of the material that takes most is
+/// made, and seconds of all operators.
+Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings);
+
 /// Bytes of the problem and of the runs of its study, which are solved one after another beside its solution.
 double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs);
 
@@ -60,8 +67,9 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
 /// (`summary.outcome`) and holds the last finite iterate. Throws InvalidProblem (faults of the data,
 /// those included that only the real mesh shows), SolveError, and Cancelled if the observer ends it.
 ///
-/// A sweep adds an entry for each variation of the problem's data, solved by the same operator; one that has
-/// no solution says why and does not end the others. Cancelled and the time limit are for the whole.
+/// A sweep adds an entry for each variation of the problem's data, solved by the same operator, or one of
+/// another material; one that has no solution says why and does not end the others. Cancelled and the time
+/// limit are for the whole.
 ///
 /// With a cache, an operator that is kept there under `problem.operator_key` is used again, which spares the
 /// mesh, the assembly and the factorisation; else the one that is made is kept there. The paper's form has

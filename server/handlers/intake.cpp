@@ -1,5 +1,6 @@
 #include "server/handlers/intake.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -84,16 +85,23 @@ void require_little_memory(const Intake& intake, const Limits& limits) {
                       " (--max-memory). Take a coarser mesh or the nonconforming scheme.");
 }
 
-/// What a sweep holds are the contact unknowns of its entries.
+/// What a sweep holds are the contact unknowns of its entries; and each material is as much work as a
+/// problem.
 void require_short_sweep(const Intake& intake, const Limits& limits) {
+  const Unknowns& unknowns = intake.estimate.unknowns;
   const auto entries = static_cast<std::int64_t>(intake.request.sweep.size());
-  const std::int64_t unknowns = entries * intake.estimate.unknowns.contact;
-  if (unknowns <= limits.max_unknowns) return;
+  const auto operators = static_cast<std::int64_t>(1 + operators_of(intake.request.sweep));
+  const std::int64_t of_contact = entries * unknowns.contact, of_stress = operators * unknowns.stress;
+  if (std::max(of_contact, operators > 1 ? of_stress : 0) <= limits.max_unknowns) return;
+  const bool by_materials = of_contact <= limits.max_unknowns;
   throw too_large("too-many-unknowns", "The sweep", "/sweep",
-                  "Its " + std::to_string(entries) + " entries have " + std::to_string(unknowns) +
-                      " contact unknowns together; this service takes up to " +
-                      std::to_string(limits.max_unknowns) +
-                      " (--max-unknowns). Split the sweep: the later parts find the factor of the first.");
+                  (by_materials ? "By its " + std::to_string(operators) + " materials it has " +
+                                      std::to_string(of_stress) + " stress unknowns"
+                                : "Its " + std::to_string(entries) + " entries have " +
+                                      std::to_string(of_contact) + " contact unknowns") +
+                      " together; this service takes up to " + std::to_string(limits.max_unknowns) +
+                      " (--max-unknowns). Split the sweep" +
+                      (by_materials ? "." : ": the later parts find the factor of the first."));
 }
 
 /// The runs follow each other, but their times add up.
@@ -129,8 +137,7 @@ Intake judge(std::string text, const Request& request, const Limits& limits) {
   intake.text = std::move(text);
   intake.request = api::parse_request(intake.text, &observer);
   observer.check();
-  intake.estimate =
-      for_solve(estimate(intake.request.problem), intake.request.settings, intake.request.sweep.size());
+  intake.estimate = estimate(intake.request.problem, intake.request.sweep, intake.request.settings);
   require_few_unknowns(intake, limits);
   require_short_sweep(intake, limits);
   if (intake.request.study)

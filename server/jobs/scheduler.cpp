@@ -277,7 +277,7 @@ void Scheduler::count_memory(const Claim& claim) {
     const api::Request request = api::parse_request(*claim.problem);
     auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
     for (Estimate& each : runs) each = for_solve(each, request.settings);
-    const Estimate problem = for_solve(estimate(request.problem), request.settings, request.sweep.size());
+    const Estimate problem = estimate(request.problem, request.sweep, request.settings);
     memory_.add(claim.job.id, memory_with_study(problem, runs), claim.job.owner);
   } catch (const std::exception&) {
     // The run says what is wrong with the problem.

@@ -21,6 +21,7 @@ class Operator {
            bool held_by_contact_alone, Progress& progress);
 
   const Mesh& mesh() const { return *mesh_; }
+  const std::shared_ptr<const Mesh>& shared_mesh() const { return mesh_; }
   const Cholesky& factor() const { return factor_; }
   const Eigen::MatrixXd& complement() const { return factor_.complement(); }  ///< S
   const Eigen::VectorXd& weight() const { return weight_; }  ///< <1, φ_i> of the contact unknowns

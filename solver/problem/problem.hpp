@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -74,16 +75,19 @@ struct Problem {
   std::string load_key;
 };
 
-/// The data of a problem anew, its operator as it was.
+/// The data of a problem anew, on its mesh. But for another material its operator is as it was.
 struct Variation {
   std::string title;
   VectorField body;
   std::map<std::string, Condition> boundary;  ///< of the same kinds as the problem's
   std::string load_key;
+  std::optional<Material> material = {};  ///< nothing: the problem's own
+  /// In the way of the problem's keys: two variations have it in common only if their materials are the same.
+  std::string material_key = {};
 };
 
-/// Gives the problem the data of the variation.
-void apply(const Variation& variation, Problem& problem);
+/// Gives a problem that may have been varied before the data of another variation of the original.
+void apply(const Variation& variation, const Problem& original, Problem& varied);
 
 /// The condition of the given kind on the part, or null if the part has another one or none.
 template <typename Kind>

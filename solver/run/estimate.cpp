@@ -218,6 +218,36 @@ Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entr
   return estimate;
 }
 
+std::size_t operators_of(const std::vector<Variation>& sweep) {
+  std::size_t count = 0;
+  std::string at_hand;
+  for (const Variation& variation : sweep) {
+    const std::string& key = variation.material_key;
+    const bool is_own = !variation.material;
+    if (is_own ? !at_hand.empty() : key.empty() || key != at_hand) ++count;
+    at_hand = is_own ? "" : key.empty() ? "?" : key;
+  }
+  return count;
+}
+
+Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings) {
+  Estimate most = estimate(problem);
+  most.seconds *= static_cast<double>(1 + operators_of(sweep));
+  const auto varies = [](const Variation& variation) {
+    return variation.material && !is_constant(*variation.material);
+  };
+  // What takes memory is that a material varies in space, not how.
+  const auto found = std::ranges::find_if(sweep, varies);
+  if (found != sweep.end() && is_constant(problem.material)) {
+    Problem varied = problem;
+    apply(*found, problem, varied);
+    const Estimate with_it = estimate(varied);
+    most.memory_bytes = std::max(most.memory_bytes, with_it.memory_bytes);
+    most.paper_form_bytes = std::max(most.paper_form_bytes, with_it.paper_form_bytes);
+  }
+  return for_solve(most, settings, sweep.size());
+}
+
 double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs) {
   double bytes = problem.memory_bytes;
   for (const Estimate& run : runs) bytes = std::max(bytes, problem.solution_bytes + run.memory_bytes);

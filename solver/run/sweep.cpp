@@ -77,9 +77,11 @@ struct AffineForce {
 /// A variation that was recovered, and how its numbers change with λ − s.
 class Sweep::Reference {
  public:
-  Reference(Problem posed, const std::shared_ptr<const Operator>& kept, const Settings& settings,
+  /// By the operator, or one that is made on the mesh.
+  template <typename OperatorOrMesh>
+  Reference(Problem posed, const std::shared_ptr<const OperatorOrMesh>& given, const Settings& settings,
             Progress& progress)
-      : problem_(std::move(posed)), condensed_(problem_, kept, progress), contact_(condensed_.contact()) {
+      : problem_(std::move(posed)), condensed_(problem_, given, progress), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
@@ -90,6 +92,7 @@ class Sweep::Reference {
   }
 
   const SweepEntry& entry() const { return entry_; }
+  const std::shared_ptr<const Operator>& used_operator() const { return condensed_.used_operator(); }
 
   /// The solution for the problem's gaps, if these two differ in the gaps alone and the change is a function
   /// of the clearance space.
@@ -194,17 +197,36 @@ class Sweep::Reference {
 };
 
 Sweep::Sweep(const Problem& problem, std::shared_ptr<const Operator> kept, const Settings& settings)
-    : settings_(settings), varied_(problem), operator_(std::move(kept)) {}
+    : problem_(problem),
+      settings_(settings),
+      varied_(problem),
+      mesh_(kept->shared_mesh()),
+      operator_(std::move(kept)) {}
 
 Sweep::~Sweep() = default;
 
+/// Whether the operator is that of the variation. That of a material without a key is not kept.
+bool Sweep::is_at_hand(const Variation& variation) const {
+  return operator_ && material_key_ == (variation.material ? variation.material_key : "") &&
+         !(variation.material && variation.material_key.empty());
+}
+
 SweepEntry Sweep::solve(const Variation& variation, Progress& progress) {
-  apply(variation, varied_);
+  apply(variation, problem_, varied_);
   std::optional<SweepEntry> entry;
+  if (!is_at_hand(variation)) {
+    // Before the next one is made: there is memory for one.
+    reference_.reset();
+    operator_.reset();
+  }
   if (reference_) entry = reference_->with_gaps_of(varied_, settings_, progress);
   if (!entry) {
     reference_.reset();
-    reference_ = std::make_unique<Reference>(varied_, operator_, settings_, progress);
+    reference_ = operator_ ? std::make_unique<Reference>(varied_, operator_, settings_, progress)
+                           : std::make_unique<Reference>(varied_, mesh_, settings_, progress);
+    const bool is_known = !variation.material || !variation.material_key.empty();
+    operator_ = is_known ? reference_->used_operator() : nullptr;
+    material_key_ = variation.material ? variation.material_key : "";
     entry = reference_->entry();
   }
   if (!std::isfinite(entry->energy) || !std::isfinite(entry->sums.force))

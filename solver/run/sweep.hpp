@@ -7,7 +7,8 @@ namespace signorini {
 /// What stands in an entry, of a solution of the variation.
 SweepEntry entry_of(Solution solution);
 
-/// Solves variations of a problem by its operator.
+/// Solves variations of a problem by its operator, or where the material is another by the operator of that,
+/// which is made on the same mesh: variations of one material that follow each other share one.
 ///
 /// New loads and boundary values cost a forward and a backward solve and the element-wise recovery. New gaps
 /// alone cost the dense step: where g changes by a function s of the clearance space (always for P0, for P1
@@ -16,7 +17,7 @@ SweepEntry entry_of(Solution solution);
 /// λ − s.
 class Sweep {
  public:
-  /// Of the problem whose operator was kept. The settings must outlive the sweep.
+  /// Of the problem whose operator was kept. Problem and settings must outlive the sweep.
   Sweep(const Problem& problem, std::shared_ptr<const Operator> kept, const Settings& settings);
   ~Sweep();
 
@@ -26,9 +27,14 @@ class Sweep {
  private:
   class Reference;
 
+  bool is_at_hand(const Variation& variation) const;
+
+  const Problem& problem_;
   const Settings& settings_;
   Problem varied_;
-  std::shared_ptr<const Operator> operator_;
+  const std::shared_ptr<const Mesh> mesh_;
+  std::shared_ptr<const Operator> operator_;  ///< null if none is at hand
+  std::string material_key_;                  ///< of its material; empty: the problem's own
   std::unique_ptr<Reference> reference_;
 };
 

@@ -52,7 +52,8 @@ class Validation {
     return std::move(faults_);
   }
 
-  std::vector<Fault> run_on_data(const Mesh& mesh, bool gaps_only) {
+  std::vector<Fault> run_on_data(const Mesh& mesh, bool gaps_only, bool other_material) {
+    if (other_material) check_material(mesh);
     if (!gaps_only) check_body(mesh);
     check_boundary_data(mesh);
     if (faults_.empty()) check_gaps(mesh);
@@ -105,13 +106,17 @@ class Validation {
 
   /// Evaluates every field where the mesh needs it.
   void check_fields(const Mesh& mesh) {
+    check_material(mesh);
+    check_body(mesh);
+    check_boundary_data(mesh);
+    if (faults_.empty()) check_gaps(mesh);
+  }
+
+  void check_material(const Mesh& mesh) {
     attempt([&] {
       sample(mesh, fields_of(problem_.material),
              [&](const Point& x) { compliance_at(problem_.material, x); });
     });
-    check_body(mesh);
-    check_boundary_data(mesh);
-    if (faults_.empty()) check_gaps(mesh);
   }
 
   void check_body(const Mesh& mesh) {
@@ -195,10 +200,11 @@ class Validation {
 
 }  // namespace
 
-void apply(const Variation& variation, Problem& problem) {
-  problem.body = variation.body;
-  problem.boundary = variation.boundary;
-  problem.load_key = variation.load_key;
+void apply(const Variation& variation, const Problem& original, Problem& varied) {
+  varied.body = variation.body;
+  varied.boundary = variation.boundary;
+  varied.load_key = variation.load_key;
+  varied.material = variation.material.value_or(original.material);
 }
 
 std::vector<Fault> validate(const Problem& problem) {
@@ -225,11 +231,11 @@ void check_sweep(const Problem& problem, const std::vector<Variation>& sweep, co
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     check.is_complete = check.is_complete && most_steps > 0;
     if (most_steps <= 0) return;
-    apply(sweep[i], varied);
+    apply(sweep[i], problem, varied);
     Validation validation(varied, most_of_field, progress);
     const bool other_gaps_only = !problem.load_key.empty() && varied.load_key == problem.load_key;
     const std::string place = "/sweep/" + std::to_string(i);
-    for (Fault& fault : validation.run_on_data(mesh, other_gaps_only)) {
+    for (Fault& fault : validation.run_on_data(mesh, other_gaps_only, sweep[i].material.has_value())) {
       if (!fault.where.starts_with(place)) fault.where = place + fault.where;
       check.faults.push_back(std::move(fault));
     }

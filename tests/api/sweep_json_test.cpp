@@ -1,3 +1,5 @@
+#include <set>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -5,6 +7,7 @@
 #include "api/problem_json.hpp"
 #include "api/result_document.hpp"
 #include "faults_of.hpp"
+#include "solve.hpp"
 #include "written_by.hpp"
 
 namespace signorini::api::sweep_json_test {
@@ -61,15 +64,51 @@ TEST(ReadSweep, KnowsWhatDiffersInGapsAlone) {
             parse_request(block(json::array({json::object()})).dump()).problem.operator_key);
 }
 
+TEST(ReadSweep, TakesOtherMaterials) {
+  const auto sweep = read(json::parse(R"([
+    {"material": {"young": 4}}, {"material": {"young": 3}}, {"material": {"poisson": "0.3 - 0.1 * x"}},
+    {"material": {"young": null, "poisson": null, "tensor": [[4, 1, 0], [1, 4, 0], [0, 0, 1.5]]}},
+    {"material": {"plane": "stress"}, "load": {"body": [0, -1]}}, {"material": {"young": 4.0}}])"));
+  ASSERT_EQ(sweep.size(), 6u);
+  const auto young = [&](std::size_t i) {
+    return std::get<YoungPoisson>(*sweep[i].material).young(Point(0, 0));
+  };
+  EXPECT_EQ(young(0), 4);
+  EXPECT_FALSE(sweep[1].material) << "it is the problem's own";
+  EXPECT_EQ(young(2), 3);
+  EXPECT_NEAR(std::get<YoungPoisson>(*sweep[2].material).poisson(Point(0.5, 0)), 0.25, 1e-15);
+  EXPECT_TRUE(std::holds_alternative<HookeTensor>(*sweep[3].material));
+  EXPECT_EQ(std::get<YoungPoisson>(*sweep[4].material).plane, Plane::stress);
+  EXPECT_EQ(sweep[4].body(1, Point(0, 0)), -1);
+  std::set<std::string> keys;
+  for (const std::size_t i : {0, 2, 3, 4}) keys.insert(sweep[i].material_key);
+  EXPECT_EQ(keys.size(), 4u);
+  EXPECT_FALSE(keys.contains(""));
+  EXPECT_EQ(operators_of(sweep), 6u);
+  EXPECT_EQ(operators_of({sweep[0], sweep[0], sweep[1], sweep[1], sweep[2]}), 3u);
+}
+
+TEST(ReadSweep, RefusesEveryBadMaterial) {
+  EXPECT_THAT(pointers_of(faults_in(json::parse(R"([
+    {"material": {"young": -4}}, {"material": {"yuong": 3}}, {"material": null}, {"material": {"poisson": 0.5}},
+    {"material": {"tensor": [[4, 1, 0], [1, 4, 0], [0, 0, 1.5]]}}, {"material": {"stiffness": 1}}])"))),
+              ElementsAre("/sweep/0/material/young", "/sweep/1/material/yuong", "/sweep/2/material",
+                          "/sweep/3/material/poisson", "/sweep/4/material", "/sweep/5/material/stiffness"));
+  // What only its values show.
+  const json soft{{"material", {{"young", "x - 1"}}}};
+  EXPECT_THAT(pointers_of(faults_in(json::array({json::object(), soft}))),
+              ElementsAre(testing::StartsWith("/sweep/1/material")));
+}
+
 TEST(ReadSweep, RefusesEveryChangeOfTheOperator) {
   const auto faults = faults_in(json::parse(R"([
     {"mesh": {"divisions": [8, 4]}}, {}, {"boundary": {"bottom": {"type": "fixed"}, "right": {"gap": 1}, "top": null}},
-    {"boundary": null, "material": {"young": 4}}, 7])"));
+    {"boundary": null, "scheme": "conforming"}, 7])"));
   EXPECT_THAT(pointers_of(faults),
               ElementsAre("/sweep/0/mesh", "/sweep/2/boundary/bottom/type", "/sweep/2/boundary/right",
-                          "/sweep/2/boundary/top", "/sweep/3/material", "/sweep/3/boundary", "/sweep/4"));
-  EXPECT_THAT(faults[0].detail, HasSubstr("operator"));
-  EXPECT_THAT(faults[0].detail, HasSubstr("title, load, boundary"));
+                          "/sweep/2/boundary/top", "/sweep/3/scheme", "/sweep/3/boundary", "/sweep/4"));
+  EXPECT_THAT(faults[0].detail, HasSubstr("one mesh"));
+  EXPECT_THAT(faults[0].detail, HasSubstr("title, load, boundary, material"));
   EXPECT_THAT(faults[2].detail, HasSubstr("no condition"));
 }
 

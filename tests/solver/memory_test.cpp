@@ -186,6 +186,25 @@ TEST_P(Memory, OfASweepCountsItsEntries) {
   EXPECT_GE(peak + tables, predicted / 2);
 }
 
+TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
+  const Problem problem = elastic(GetParam(), 32, 32);
+  std::vector<Variation> sweep(2, {"", problem.body, problem.boundary, "same"});
+  for (std::size_t i = 0; i < sweep.size(); ++i) {
+    const std::string young = "3 + x * " + std::to_string(i);
+    sweep[i].material = YoungPoisson{problems::formula(young), Field(0.3), Plane::strain};
+    sweep[i].material_key = young;
+  }
+  problems::Shelf shelf;
+  Observer indifferent;
+  const Settings settings{ActiveSet{}, std::nullopt};
+  const Solution solution = solve(problem, sweep, settings, indifferent, shelf);
+  const double predicted = estimate(problem, sweep, settings).memory_bytes;
+  const auto peak = static_cast<double>(solution.summary.peak_memory_bytes);
+  EXPECT_LE(peak, predicted);
+  EXPECT_GE(peak + tables_of_laws, predicted / 2);
+  EXPECT_NEAR(estimate(problem, sweep, settings).seconds, 3 * estimate(problem).seconds, 1e-12);
+}
+
 TEST_P(Memory, OfThePapersIteration) {
   PaperUzawa few;
   few.rho = 1e-3;

@@ -171,6 +171,81 @@ TEST(Sweep, EveryMethodMaySweep) {
   }
 }
 
+/// Other materials of a family, two entries of each, the second with other gaps; in between the family's own.
+std::vector<Problem> material_variations_of(const Problem& family) {
+  const Field varying = problems::function([](const Point& x) { return 2 + std::sin(x.x() + 3 * x.y()); });
+  std::vector<Material> materials{family.material};
+  if (components(family.material) == 1)
+    materials.insert(materials.end(),
+                     {MembraneStiffness::isotropic(2.5), MembraneStiffness{2, 0.5, varying}});
+  else
+    materials.insert(materials.end(), {YoungPoisson{7, 0.49, Plane::stress}, YoungPoisson{varying, 0.2}});
+  materials.push_back(family.material);
+  std::vector<Problem> variations;
+  for (const Material& material : materials)
+    for (const double gap : {0.01, 0.03}) {
+      Problem problem = family;
+      problem.material = material;
+      for (auto& [part, condition] : problem.boundary)
+        if (auto* contact = std::get_if<Contact>(&condition)) contact->gap = gap;
+      variations.push_back(problem);
+    }
+  return variations;
+}
+
+TEST(Sweep, EntriesOfOtherMaterialsAreSingleSolves) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    Problem pressed = problems::elastic(scheme, 0.3);
+    pressed.body = VectorField(0, -2);
+    Problem contact_alone = problems::paper(scheme, 6);
+    contact_alone.boundary = {{"bottom", Contact{}}, {"top", Contact{}}};
+    contact_alone.body = Field(-1);
+    for (Problem family : std::array{problems::paper(scheme, 6), pressed, contact_alone}) {
+      const std::vector<Problem> single = material_variations_of(family);
+      for (const bool with_keys : {true, false}) {
+        std::vector<Variation> sweep;
+        for (std::size_t i = 0; i < single.size(); ++i) {
+          sweep.push_back(data_of(single[i], "loads"));
+          if (i < 2 || i + 2 >= single.size()) continue;
+          sweep.back().material = single[i].material;
+          if (with_keys) sweep.back().material_key = std::to_string(i / 2);
+        }
+        EXPECT_EQ(operators_of(sweep), with_keys ? 3u : 5u);
+        const Solution solution = solve_sweep(family, sweep, {ActiveSet{}, {}});
+        for (std::size_t i = 0; i < single.size(); ++i)
+          expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-10);
+        if (sanitized) break;
+      }
+    }
+  }
+}
+
+TEST(Sweep, AMaterialThatIsNoneFailsAloneOrIsRefusedBefore) {
+  Problem problem = problems::paper(Scheme::nonconforming, 6);
+  std::vector<Variation> sweep(3, data_of(problem, "loads"));
+  // Positive in the middle of each triangle of the coarse mesh that is looked at beforehand.
+  const auto thin = [](const Point& x, const Vector&) { return std::abs(x.x() - 1. / 18) < 1e-3 ? -1. : 1.; };
+  sweep[1].material = MembraneStiffness::isotropic(Field(thin, "/sweep/1/material/stiffness"));
+  const auto bad = [&] { return solve_sweep(problem, sweep, {ActiveSet{}, {}}); };
+  std::string found;
+  try {
+    const Solution solution = bad();
+    found = solution.sweep[1].error;
+    EXPECT_EQ(solution.sweep[0].error + solution.sweep[2].error, "");
+  } catch (const InvalidProblem& invalid) {
+    found = invalid.faults().front().where;
+  }
+  EXPECT_NE(found.find("/material/stiffness"), std::string::npos) << found;
+  sweep[1].material = MembraneStiffness{1, 2, 1};
+  try {
+    bad();
+    FAIL();
+  } catch (const InvalidProblem& invalid) {
+    EXPECT_TRUE(invalid.faults().front().where.starts_with("/sweep/1/material"))
+        << invalid.faults().front().where;
+  }
+}
+
 TEST(Sweep, AnEntryWithoutSolutionSaysWhyAndTheOthersGoOn) {
   Problem resting = problems::paper(Scheme::nonconforming, 6);
   resting.boundary = {{"bottom", Contact{}}};

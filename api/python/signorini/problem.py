@@ -41,6 +41,7 @@ class Variation:
 
     title: str | None = None
     load: Load | Mapping[str, Any] | None = None
+    material: Material | Mapping[str, Any] | None = None  #: by which the problem is factored anew, on its mesh
     boundary: Mapping[str, Mapping[str, Any]] | None = None  #: part → changes of value, gap or pressure
 
 
@@ -58,7 +59,7 @@ class Problem:
     boundary: Mapping[str, Condition]  #: part → condition; `all` names every part that is not named
     scheme: Literal["conforming", "nonconforming"]
     solver: Solver | None = None
-    sweep: Sequence[Variation] | None = None  #: other data, solved by the same factorisation
+    sweep: Sequence[Variation] | None = None  #: other data, solved on the same mesh
     study: Study | None = None
 
     def document(self) -> dict[str, Any]:
