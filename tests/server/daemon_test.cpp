@@ -363,7 +363,7 @@ TEST(SolveCommand, PicksFields) {
 TEST(SolveCommand, WritesTheResultForParaView) {
   ChildProcess process({"solve", "--format", "vtu", "-"}, example("paper-nonconforming").dump());
   EXPECT_EQ(process.wait(60s), 0) << process.standard_error();
-  EXPECT_NE(process.standard_output().find("<Piece NumberOfPoints=\"864\" NumberOfCells=\"288\">"),
+  EXPECT_NE(process.standard_output().find("<Piece NumberOfPoints=\"960\" NumberOfCells=\"336\">"),
             std::string::npos);
   EXPECT_TRUE(process.standard_output().ends_with("</VTKFile>\n"));
 }
