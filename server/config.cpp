@@ -121,13 +121,19 @@ CLI::App* add_solve(CLI::App& app, SolveConfig& solve) {
       "--fields", solve.fields,
       "Members of the result, e.g. summary,contact (all if not given; summary is always there)");
   command
-      ->add_option("--format", solve.format, "Of the result: json, cbor, vtu for ParaView, or svg, a picture")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"json", "cbor", "vtu", "svg"}));
-  command->add_option("--field", solve.picture,
-                      "What the picture shows: displacement, stress, von_mises, error, contact, history");
+      ->add_option("--format", solve.format,
+                   "Of the result: table to read (at a terminal), json (else), cbor, vtu for ParaView, svg, "
+                   "a picture, "
+                   "or csv")
+      ->check(CLI::IsMember({"table", "json", "cbor", "vtu", "svg", "csv"}));
+  command->add_option(
+      "--field", solve.field,
+      "What the picture shows: displacement, stress, von_mises, error, contact, history; of the last "
+      "two also what the csv has");
   command->add_option("--deformed", solve.deformed,
                       "So many times the displacement moves the points of a picture");
+  command->add_option("--series", solve.series,
+                      "Directory for series.pvd and a .vtu of each level of the mesh, or entry of the sweep");
   command->add_option("FILE", solve.file, "Problem document; - reads standard input")->required();
   return command;
 }

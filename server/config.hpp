@@ -33,11 +33,12 @@ struct DaemonConfig {
 
 /// `signorinid solve`.
 struct SolveConfig {
-  std::string file;             ///< `-` is standard input
-  std::string fields;           ///< empty: all
-  std::string format = "json";  ///< or `cbor`, `vtu` or `svg`
-  std::string picture;          ///< what an SVG shows; empty: the displacement
+  std::string file;    ///< `-` is standard input
+  std::string fields;  ///< empty: all
+  std::string format;  ///< `table`, `json`, `cbor`, `vtu`, `svg` or `csv`; empty: for whoever reads it
+  std::string field;   ///< what a picture shows or a CSV has; empty: the displacement, the contact
   std::optional<double> deformed;
+  std::string series;  ///< directory for a series of .vtu files; empty: none
 };
 
 /// `signorinid study`.

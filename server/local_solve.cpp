@@ -10,6 +10,7 @@
 #include "server/exit_code.hpp"
 #include "server/failure.hpp"
 #include "server/jobs/kept_operators.hpp"
+#include "server/terminal.hpp"
 
 namespace signorini::server {
 namespace {
@@ -20,15 +21,42 @@ void ask_to_stop(int) {
   stop_asked = 1;
 }
 
-/// Ends the solve on Ctrl-C.
-class UntilSignal : public Observer {
+/// Shows how far the solve is, adds its levels to a series if there is one, and ends it on Ctrl-C.
+class LocalObserver : public Observer {
  public:
-  UntilSignal() {
+  LocalObserver(std::int64_t triangles, Series* series) : progress_(triangles), series_(series) {
     std::signal(SIGINT, ask_to_stop);
     std::signal(SIGTERM, ask_to_stop);
   }
-  bool keep_going() override { return stop_asked == 0; }
+
+  void entered(Phase phase) override { progress_.entered(phase); }
+  void iterated(const Iteration& iteration) override { progress_.iterated(iteration); }
+  void refined(const Level& level, const Solution& solution) override {
+    progress_.refined(level);
+    if (series_ != nullptr) series_->add_level(level, solution);
+  }
+  void swept(std::size_t done, std::size_t count) override { progress_.done("entry", done, count); }
+  void studied(std::size_t done, std::size_t count) override { progress_.done("run", done, count); }
+  bool keep_going() override {
+    progress_.show_now_and_then();
+    return stop_asked == 0;
+  }
+
+ private:
+  TerminalProgress progress_;
+  Series* const series_;
 };
+
+/// Solves the problem, and what its series has beyond it.
+Ending solved(const api::Request& request, Series* series) {
+  LocalObserver observer(estimate(request.problem).triangles, series);
+  KeptOperators not_kept(0);
+  Ending ending = ending_of(solve_request(request, observer, not_kept));
+  if (series == nullptr) return ending;
+  if (!request.problem.mesh.adaptive) series->add_sweep(request, *ending.solution, observer);
+  series->finish();
+  return ending;
+}
 
 void report(const ProblemDetails& details, std::optional<int> status = std::nullopt) {
   std::cerr << to_json(details, status) << std::endl;
@@ -70,14 +98,14 @@ api::Request parse_input(const std::string& text) {
   }
 }
 
-int solve_and_write(const api::Request& request, const WriteEnding& write) {
-  UntilSignal observer;
-  KeptOperators not_kept(0);
+int solve_and_write(const api::Request& request, const WriteEnding& write, Series* series) {
   try {
-    const Ending ending = ending_of(solve_request(request, observer, not_kept));
+    const Ending ending = solved(request, series);
     if (ending.error) report(*ending.error);
     const bool written = write_to_stdout(ending, write);
     return written && ending.status == JobStatus::succeeded ? exit_done : exit_failed;
+  } catch (const BadInput&) {
+    throw;
   } catch (...) {
     const Failure failure = describe(std::current_exception());
     report(failure.details, status_of(failure.details));

@@ -6,6 +6,7 @@
 
 #include "api/piece_writer.hpp"
 #include "server/jobs/run.hpp"
+#include "server/series.hpp"
 
 /// What the commands share that solve a problem without a server.
 namespace signorini::server {
@@ -26,8 +27,9 @@ api::Request parse_input(const std::string& text);
 using WriteEnding = std::function<bool(const Ending& ending, const api::Sink& sink)>;
 
 /// Solves the problem until a signal ends it: what `write` writes to standard output, what went wrong as
-/// problem+json to standard error. Returns the exit code.
-int solve_and_write(const api::Request& request, const WriteEnding& write);
+/// problem+json to standard error, and if that is a terminal how far it is. Adds to the series if there is
+/// one. Returns the exit code.
+int solve_and_write(const api::Request& request, const WriteEnding& write, Series* series = nullptr);
 
 /// What the command returns, or the exit code for the BadInput that it throws, which goes to standard error.
 int run_locally(const std::function<int()>& command);

@@ -1,5 +1,5 @@
 """Reads the replies of a running service with readers that are not ours: Python's json and gzip, and Debian's
-python3-cbor2. Run as: formats_test.py PATH_OF_SIGNORINID
+python3-cbor2 and python3-meshio. Run as: formats_test.py PATH_OF_SIGNORINID
 """
 
 import gzip
@@ -9,11 +9,15 @@ import os
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 import urllib.request
+import xml.etree.ElementTree
 
 import cbor2
+import meshio
+import numpy
 
 JSON = "application/json"
 CBOR = "application/cbor"
@@ -148,6 +152,66 @@ class Formats(unittest.TestCase):
                 self.assertEqual(headers["Content-Encoding"], "gzip", file)
                 self.assertEqual(gzip.decompress(packed), plain, file)
                 self.assertLess(len(packed), len(plain), file)
+
+    def test_the_vtu_is_read_by_meshio(self):
+        for name in ["paper-nonconforming", "paper-conforming", "elastic-block", "hertz-half-disc", "plate-with-hole"]:
+            with self.subTest(name), tempfile.NamedTemporaryFile(suffix=".vtu") as file:
+                path = self.solved(name)
+                file.write(self.call(path + "/result.vtu")[1])
+                file.flush()
+                grid = meshio.read(file.name)
+                result = json.loads(self.call(path + "/result?fields=summary,mesh")[1])
+                triangles, lines = grid.cells_dict["triangle"], grid.cells_dict["line"]
+                self.assertEqual(len(triangles), len(result["mesh"]["triangles"]))
+                parts = list(result["mesh"]["boundary"].values())
+                numbers = grid.cell_data_dict["part"]
+                self.assertEqual(numbers["line"].tolist(), [i for i, part in enumerate(parts) for _ in part])
+                self.assertEqual(set(numbers["triangle"]), {-1})
+                ends = grid.points[lines]
+                wanted = {frozenset(map(tuple, (result["mesh"]["points"][i] for i in edge))) for part in parts for edge in part}
+                self.assertEqual({frozenset(map(tuple, line[:, :2])) for line in ends}, wanted)
+                pressure = grid.point_data["pressure"].ravel()
+                self.assertTrue(numpy.isnan(pressure[triangles]).all())
+                on_lines = numpy.nan_to_num(pressure[lines].mean(axis=1))
+                lengths = numpy.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+                sums = result["summary"]["contact"]
+                self.assertAlmostEqual((on_lines * lengths).sum() / sums["force"], 1, 9)
+                self.assertAlmostEqual(numpy.nanmax(pressure) / sums["max_pressure"], 1, 12)
+                a, b, c = (grid.points[triangles[:, i], :2] for i in range(3))
+                areas = numpy.abs(numpy.cross(b - a, c - a)) / 2
+                squares = (grid.cell_data_dict["error_density"]["triangle"].ravel() * areas).sum()
+                bound = result["summary"]["error_bound"]["value"]
+                self.assertGreater(squares, 0)
+                self.assertLessEqual(squares, bound**2 * (1 + 1e-9))
+
+    def series(self, problem):
+        """The times of a series and its grids, as the command line writes them."""
+        with tempfile.TemporaryDirectory() as directory:
+            subprocess.run([SIGNORINID, "solve", "--fields", "summary", "--series", directory + "/new", "-"],
+                           input=json.dumps(problem).encode(), stdout=subprocess.DEVNULL, check=True, timeout=120)
+            sets = xml.etree.ElementTree.parse(directory + "/new/series.pvd").getroot().findall("Collection/DataSet")
+            self.assertEqual(len(os.listdir(directory + "/new")), len(sets) + 1)
+            return [float(each.get("timestep")) for each in sets], \
+                [meshio.read(f"{directory}/new/{each.get('file')}") for each in sets]
+
+    def test_a_series_has_a_file_a_level_or_an_entry(self):
+        times, grids = self.series(json.loads(self.problem("adaptive-mesh")))
+        self.assertEqual(times, list(range(1, len(times) + 1)))
+        triangles = [len(grid.cells_dict["triangle"]) for grid in grids]
+        self.assertGreater(len(triangles), 2)
+        self.assertEqual(triangles, sorted(triangles))
+        problem = json.loads(self.problem("elastic-block"))
+        problem["sweep"] = [{"material": {"young": 400}}, {"boundary": {"bottom": {"gap": "0.02 * x^2"}}}]
+        times, grids = self.series(problem)
+        self.assertEqual(times, [0, 1, 2])
+        for grid, change in zip(grids, [{}, *problem["sweep"]]):
+            alone = {**problem, "material": {**problem["material"], **change.get("material", {})}}
+            alone["boundary"] = {**alone["boundary"], "bottom": {**alone["boundary"]["bottom"],
+                                                                 **change.get("boundary", {}).get("bottom", {})}}
+            del alone["sweep"]
+            reply = self.call("/v1/solves?wait=60&fields=displacement", body=json.dumps(alone).encode())[1]
+            wanted = numpy.abs(json.loads(reply)["displacement"]["at_points"]).max()
+            self.assertAlmostEqual(numpy.abs(grid.point_data["displacement_continuous"]).max() / wanted, 1, 9)
 
     def kilobytes(self, quantity):
         with open(f"/proc/{self.daemon.pid}/status") as status:
