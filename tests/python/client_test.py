@@ -114,6 +114,41 @@ class Solves(WithDaemon):
         self.assertEqual(list(self.client.solve(block(), fields=[]).document), ["id", "status", "summary"])
         self.assertEqual(list(Local(PROGRAM).solve(block(), fields=[]).document), ["status", "summary"])
 
+    def test_a_batch_is_solved_as_a_whole(self) -> None:
+        twin = AsyncClient(self.daemon.url)
+        failing = dataclasses.replace(block(), solver=STOPPED_EARLY)
+        ways: dict[str, Callable[..., list[Result]]] = {
+            "a": self.client.batch,
+            "b & c": lambda *problems, **asked: asyncio.run(twin.batch(*problems, **asked)),
+        }
+        for tag, solve_batch in ways.items():
+            problems = [block(100.0), failing, block(300.0)]
+            results = solve_batch(problems, title="three", tags=[tag], fields=["contact", "problem"])
+            self.assertEqual([result.status for result in results], ["succeeded", "failed", "succeeded"])
+            self.assertEqual(results[2].problem["material"]["young"], 300)
+            self.assertEqual(results[0].contact["bottom"].pressure.shape, (9,))
+            self.assertEqual(len(self.client.solves(tag=tag)), 3)
+            self.assertEqual(len(self.client.solves(tag=tag, status="failed")), 1)
+            with self.assertRaises(Refused) as caught:
+                self.client.delete_tagged(tag, 2)
+            self.assertEqual(caught.exception.status, 409)
+            self.assertEqual(self.client.delete_tagged(tag, 3), {"cancelled": 0, "deleted": 3})
+            self.assertEqual(asyncio.run(twin.solves(tag=tag)), [])
+        with self.assertRaises(Refused) as caught:
+            self.client.batch([block(), block(-1.0)])
+        self.assertEqual([fault.pointer for fault in caught.exception.faults], ["/problems/1/material/young"])
+        tagged = dataclasses.replace(block(title="a seal"), tags=["own"])
+        self.client.solve(tagged, fields=[])
+        self.assertEqual([solve["tags"] for solve in self.client.solves(title="SEAL")], [["own"]])
+
+    def test_a_sweep_may_vary_the_material(self) -> None:
+        stiff = Variation(title="stiff", material=dataclasses.replace(block(400.0)).material)
+        result = self.client.solve(dataclasses.replace(block(200.0), sweep=[stiff, Variation()]), fields=["sweep"])
+        energies = [entry.summary.energy for entry in result.sweep if entry.summary]
+        alone = self.client.solve(block(400.0), fields=[]).summary.energy
+        self.assertAlmostEqual(energies[0] / alone, 1, 9)
+        self.assertAlmostEqual(energies[1] / result.summary.energy, 1, 9)
+
     def test_a_bad_problem_is_refused_with_all_its_faults(self) -> None:
         bad = block().document() | {"scheme": "conformal", "material": {"young": -1, "poisson": 0.3}}
         for way, solve in every_way(self).items():

@@ -49,6 +49,28 @@ class AsyncClient:
         tickets = questions.tickets(problems, fields)
         return await self._run(conversation.solve_all(self._line(), tickets, questions.teller(progress, len(tickets))))
 
+    async def batch(
+        self,
+        problems: Iterable[AnyProblem],
+        *,
+        title: str | None = None,
+        tags: Sequence[str] | None = None,
+        fields: Sequence[str] | None = None,
+    ) -> list[Result]:
+        """Solves problems as a whole; see `Client.batch`."""
+        return await self._run(conversation.solve_batch(self._line(), questions.batch(problems, title, tags, fields)))
+
+    async def solves(
+        self, *, tag: str | None = None, title: str | None = None, status: str | None = None
+    ) -> list[dict[str, Any]]:
+        """Status documents; see `Client.solves`."""
+        return await self._run(conversation.list_solves(self._line(), questions.solves(tag, title, status)))
+
+    async def delete_tagged(self, tag: str, count: int) -> dict[str, int]:
+        """Cancels and deletes solves; see `Client.delete_tagged`."""
+        dismissed: dict[str, int] = await self._ask(questions.deletion(tag, count))
+        return dismissed
+
     async def result(self, id: str, *, fields: Sequence[str] | None = None) -> Result:
         """The result of an earlier solve; see `Client.result`."""
         return Result(await self._ask(questions.result(id, fields)))

@@ -28,6 +28,15 @@ def loads(document: bytes) -> Any:
     return value
 
 
+def loads_all(sequence: bytes) -> list[Any]:
+    """The values of a CBOR sequence (RFC 8742): documents one after the other. Raises CborError."""
+    reader = _Reader(sequence)
+    values = []
+    while reader.place < len(sequence):
+        values.append(reader.element())
+    return values
+
+
 class _Reader:
     def __init__(self, document: bytes) -> None:
         self.document = document

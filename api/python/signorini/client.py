@@ -61,6 +61,37 @@ class Client:
         tickets = questions.tickets(problems, fields)
         return self._run(conversation.solve_all(self._line(), tickets, questions.teller(progress, len(tickets))))
 
+    def batch(
+        self,
+        problems: Iterable[AnyProblem],
+        *,
+        title: str | None = None,
+        tags: Sequence[str] | None = None,
+        fields: Sequence[str] | None = None,
+    ) -> list[Result]:
+        """Solves problems that are accepted or refused as a whole, and returns their results in the same order.
+
+        One request posts them and one fetches the results, so that they must fit into the queue together; `map` is for
+        any number of them. `tags` are those of each problem, beside its own. Ctrl-C cancels all. A solve that fails
+        raises nothing here, as in `map`. Raises Refused, with pointers such as `/problems/3/load`, and
+        ServiceUnreachable.
+        """
+        return self._run(conversation.solve_batch(self._line(), questions.batch(problems, title, tags, fields)))
+
+    def solves(
+        self, *, tag: str | None = None, title: str | None = None, status: str | None = None
+    ) -> list[dict[str, Any]]:
+        """The status documents of the solves with this tag, a part of this title, and this status; newest first."""
+        return self._run(conversation.list_solves(self._line(), questions.solves(tag, title, status)))
+
+    def delete_tagged(self, tag: str, count: int) -> dict[str, int]:
+        """Cancels and deletes the `count` solves with a tag, and tells how many were `cancelled` and `deleted`.
+
+        Raises Refused (409) and does nothing if they are not so many: `len(client.solves(tag=…))` is their number.
+        """
+        dismissed: dict[str, int] = self._ask(questions.deletion(tag, count))
+        return dismissed
+
     def result(self, id: str, *, fields: Sequence[str] | None = None) -> Result:
         """The result of an earlier solve. Raises Refused if there is none (404, 410) or not yet (409)."""
         return Result(self._ask(questions.result(id, fields)))

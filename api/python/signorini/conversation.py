@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from .errors import Refused, ServiceUnreachable, SignoriniError
-from .exchange import Conversation, Lost, Pause, Reply, Request
+from .exchange import CBOR_SEQUENCE, Conversation, Lost, Pause, Reply, Request
 from .result import Result
 
 #: Seconds for which one request waits; less than what gateways commonly let pass.
@@ -99,6 +99,61 @@ def solve(line: Line, ticket: Ticket) -> Conversation[Result]:
     except BaseException as error:
         yield from _cancel([ticket], error)
         raise
+
+
+class BatchTicket:
+    """Problems that are posted together: the request that does so, and the name of the batch once that is known."""
+
+    #: Seconds without a word in which the service is believed to solve on.
+    LONGEST_SILENCE = 3600.0
+
+    def __init__(self, body: bytes, fields: Sequence[str]) -> None:
+        self.body = body
+        self.key = str(uuid.uuid4())
+        self.fields = fields
+        self.id: str | None = None
+        self.solves: list[str] = []
+
+    def request(self) -> Request:
+        return Request("POST", "/v1/batches", self.body, {"Idempotency-Key": self.key})
+
+    def read(self, reply: Reply) -> None:
+        """Learns the names. Raises Refused."""
+        document = reply.document()
+        self.id, self.solves = document["id"], document["solves"]
+
+    def results(self) -> Request:
+        """Asks for all results, which come as the solves end."""
+        path = f"/v1/batches/{self.id}/results?" + urlencode({"fields": ",".join(self.fields)}, safe=",")
+        return Request("GET", path, headers={"Accept": CBOR_SEQUENCE}, wait=self.LONGEST_SILENCE)
+
+
+def solve_batch(line: Line, ticket: BatchTicket) -> Conversation[list[Result]]:
+    """Solves the problems of a batch, in order; all are cancelled if the conversation is interrupted."""
+    try:
+        ticket.read((yield from line.ask_until_taken(ticket.request())))
+        reply = yield from line.ask_until_taken(ticket.results())
+        results = {document["id"]: Result(document) for document in reply.documents()}
+        if gone := [id for id in ticket.solves if id not in results]:
+            raise SignoriniError(f"{len(gone)} solves of the batch were deleted before they were fetched")
+        return [results[id] for id in ticket.solves]
+    except GeneratorExit:
+        raise
+    except BaseException as error:
+        yield from _cancel_batch(ticket, error)
+        raise
+
+
+def _cancel_batch(ticket: BatchTicket, error: BaseException) -> Conversation[None]:
+    """Cancels what the service may have of it, without patience; the error says why."""
+    if isinstance(error, (ServiceUnreachable, Refused)):
+        return
+    if ticket.id is None:
+        event = yield ticket.request()
+        if isinstance(event, Reply) and event.status < 400:
+            ticket.read(event)
+    if ticket.id is not None:
+        yield Request("DELETE", f"/v1/batches/{ticket.id}")
 
 
 def solve_all(
@@ -206,6 +261,17 @@ def _learn_id(ticket: Ticket) -> Conversation[None]:
             ticket.result(event)
         except SignoriniError:
             pass
+
+
+def list_solves(line: Line, request: Request) -> Conversation[list[dict[str, Any]]]:
+    """The status documents of all pages, newest first. Raises Refused."""
+    solves: list[dict[str, Any]] = []
+    while True:
+        page = yield from ask(line, request)
+        solves += page["solves"]
+        if page["links"]["next"] is None:
+            return solves
+        request = Request("GET", page["links"]["next"])
 
 
 def ask(line: Line, request: Request) -> Conversation[Any]:

@@ -13,6 +13,7 @@ from . import cbor
 from .errors import Fault, Refused
 
 CBOR = "application/cbor"
+CBOR_SEQUENCE = "application/cbor-seq"
 JSON = "application/json"
 #: Seconds that a reply may take beyond those that were asked for.
 PATIENCE_FOR_A_REPLY = 60.0
@@ -65,6 +66,12 @@ class Reply:
         if self.status >= 400:
             raise self.refusal()
         return cbor.loads(self.body) if self.headers.get("content-type", "").startswith(CBOR) else json.loads(self.body)
+
+    def documents(self) -> list[Any]:
+        """What the body says, a CBOR sequence. Raises Refused for a status of 400 and more."""
+        if self.status >= 400:
+            raise self.refusal()
+        return cbor.loads_all(self.body)
 
     def refusal(self, index: int | None = None) -> Refused:
         """Why the service refuses; `index` is the place of the problem among several."""

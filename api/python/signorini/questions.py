@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Union
+from urllib.parse import urlencode
 
-from .conversation import Ticket
+from .conversation import BatchTicket, Ticket
 from .document import encoded
 from .exchange import Request
 from .problem import Problem
@@ -36,6 +37,28 @@ def ticket(problem: AnyProblem, fields: Sequence[str] | None) -> Ticket:
 def tickets(problems: Iterable[AnyProblem], fields: Sequence[str] | None) -> list[Ticket]:
     """What a map begins with."""
     return [ticket(problem, fields) for problem in problems]
+
+
+def batch(
+    problems: Iterable[AnyProblem], title: str | None, tags: Sequence[str] | None, fields: Sequence[str] | None
+) -> BatchTicket:
+    """What a batch begins with; of the default fields those of any of its problems."""
+    listed = list(problems)
+    picked = dict.fromkeys(name for problem in listed for name in fields_of(problem, fields))
+    members = {"title": title, "tags": tags, "problems": listed}
+    body = encoded({name: member for name, member in members.items() if member is not None})
+    return BatchTicket(body, tuple(picked))
+
+
+def solves(tag: str | None, title: str | None, status: str | None) -> Request:
+    """Asks for the first page of the solves that are meant."""
+    filters = {"limit": "1000", "tag": tag, "title": title, "status": status}
+    return Request("GET", "/v1/solves?" + urlencode({name: text for name, text in filters.items() if text is not None}))
+
+
+def deletion(tag: str, count: int) -> Request:
+    """Cancels and deletes all with the tag, if they are so many."""
+    return Request("DELETE", "/v1/solves?" + urlencode({"tag": tag, "confirm": count}))
 
 
 def teller(progress: Progress, count: int) -> Callable[[int], None]:
