@@ -306,6 +306,28 @@ TEST_P(Batches, HoldNoThreadWhileTheyWait) {
   EXPECT_EQ(get("/healthz")->status, 200);
 }
 
+/// Results of megabytes, for one who takes none of them.
+TEST_P(Batches, DoNotWaitForWhoStalls) {
+  const json batch = accepted(batch_of({"large", "large", "large", "large"}));
+  std::vector<RawClient> deaf;
+  for (int i = 0; i < 2; ++i) {
+    deaf.emplace_back(service_->port());
+    deaf[i].turn_deaf();
+    deaf[i].send("GET " + std::string(batch.at("links").at("results")) +
+                 " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(lines_of(results_of(batch, "")).size(), 4u);
+  EXPECT_EQ(get("/healthz")->status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 20s);
+  // Of those who have left nothing is kept.
+  deaf.clear();
+  for (int i = 0;
+       i < 500 && get(std::string(batch.at("links").at("results")) + "?fields=summary")->status == 503; ++i)
+    std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(lines_of(results_of(batch)).size(), 4u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Stores, Batches, testing::Bool());
 
 /// All that was promised, after a death at any time.
