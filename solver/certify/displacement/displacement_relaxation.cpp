@@ -129,7 +129,7 @@ FormVector work_of_traction(const Discretization& problem, int t) {
     const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
     const std::array<int, 3> nodes{(e + (forward ? 1 : 2)) % 3, (e + (forward ? 2 : 1)) % 3, 3 + e};
     for (int c = 0; c < 2; ++c) {
-      const FormVector own = edge_moments(2, [&](double s) { return problem.traction(edge, c, s); });
+      const LocalVector own = edge_moments(2, [&](double s) { return problem.traction(edge, c, s); });
       for (int k = 0; k < 3; ++k) work[2 * nodes[k] + c] += mesh.length(edge) * own[k];
     }
   }
