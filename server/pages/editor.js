@@ -11,7 +11,7 @@ const pause = 350; // ms without a key before the service is asked
 /// `whole`: the element; `fill(text)`.
 export function editor({ text }) {
   const area = aria(element("textarea", { spellcheck: false, value: text, autocapitalize: "off" }),
-    { "aria-label": "Problem, as JSON", role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": "offers", "aria-haspopup": "listbox" });
+    { "aria-label": "Problem, as JSON", "aria-autocomplete": "list", "aria-controls": "offers", "aria-haspopup": "listbox" });
   const marks = aria(element("pre", {}), { "aria-hidden": "true" });
   const offers = aria(element("ul", { className: "offers", id: "offers", role: "listbox", hidden: true }), { "aria-label": "What may stand here" });
   const said = element("p", { className: "quiet", role: "status" }, "\u00a0");
@@ -94,12 +94,12 @@ export function editor({ text }) {
   function offer() {
     close();
     const caret = area.selectionStart;
-    place = placesOf(area.value, caret).at;
+    const { at, document, keys } = placesOf(area.value, caret);
+    place = at;
     if (!schema || !place) return;
-    const document = lenient(area.value, place);
     const own = place.kind === "key" ? schema.members(place.pointer, document) : schema.values(place.pointer, document);
     const written = area.value.slice(place.start, caret).trim().replace(/^"/, "").toLowerCase();
-    const present = new Set([...placesOf(area.value).keys].filter(([, [start]]) => start !== place.start).map(([pointer]) => pointer));
+    const present = new Set([...keys].filter(([, [start]]) => start !== place.start).map(([pointer]) => pointer));
     shown = own.filter(({ text: name }) => name.replace(/^"/, "").toLowerCase().startsWith(written) && !(place.kind === "key" && present.has(`${place.pointer}/${name}`)));
     if (!shown.length) return;
     chosen = 0;
@@ -112,7 +112,6 @@ export function editor({ text }) {
     offers.style.left = `${Math.max(4, Math.min(left, area.clientWidth - 250))}px`;
     offers.style.top = `${top > area.clientHeight / 2 ? Math.max(0, top - 20 - Math.min(224, 44 * shown.length)) : top + 4}px`;
     offers.hidden = false;
-    area.setAttribute("aria-expanded", "true");
     choose(0);
   }
 
@@ -125,7 +124,6 @@ export function editor({ text }) {
 
   function close() {
     offers.hidden = true;
-    area.setAttribute("aria-expanded", "false");
     area.removeAttribute("aria-activedescendant");
   }
 
@@ -185,12 +183,4 @@ export function editor({ text }) {
   const fill = (own) => { area.value = own; show([]); check(); };
   if (text) check();
   return { whole, fill };
-}
-
-/// The document as far as it is written, without what is being written at the place.
-function lenient(text, place) {
-  for (const put of [text.slice(place.start, place.end), place.kind === "value" ? "null" : "", '"":0', '"":0,', ',"":0']) {
-    try { return JSON.parse(text.slice(0, place.start) + put + text.slice(place.end)); } catch { /* the next one */ }
-  }
-  return {};
 }

@@ -28,7 +28,7 @@ export function short(number, digits = 4) {
   if (Number.isInteger(number) && size < 1e9) return number.toLocaleString("en").replaceAll(",", "\u202f").replace("-", "−");
   const text = size >= 1e5 || size < 1e-3 ? number.toExponential(digits - 1) : number.toPrecision(digits);
   const plain = text.includes("e") ? text.replace(/\.?0+e/, "e") : text.includes(".") ? text.replace(/\.?0+$/, "") : text;
-  return plain.replace(/e\+?(-?)(\d+)/, (_, sign, power) => `\u202f·\u202f10${superscript(sign + power)}`).replace("-", "−");
+  return plain.replace(/e\+?(-?)(\d+)/, (_, sign, power) => `\u202f·\u202f10${superscript(sign + power)}`).replace(/^(-?)1\u202f·\u202f/, "$1").replace("-", "−");
 }
 const superscript = (text) => [...text].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c])).join("");
 

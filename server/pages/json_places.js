@@ -1,10 +1,9 @@
 // Where things stand in the text of a JSON document, also of one that is not finished.
 
-const words = { true: 1, false: 1, null: 1 };
 const escaped = (key) => key.replaceAll("~", "~0").replaceAll("/", "~1");
 
 /// `places`: [start, end] of every value and `keys` of every member's name, by JSON pointer; `fault`: where the text is
-/// no JSON; `at`: what stands at the offset `caret`: the pointer of the object or value, whether a `key` or a `value` is
+/// no JSON; `document`: what is written of it; `at`: what stands at the offset `caret`: the pointer of the object or value, whether a `key` or a `value` is
 /// written there, the text of it from `start` to `end`.
 export function placesOf(text, caret = -1) {
   const places = new Map(), keys = new Map();
@@ -24,11 +23,12 @@ export function placesOf(text, caret = -1) {
 
   function scalar() {
     const start = i;
-    if (text[i] === '"') return void string();
+    if (text[i] === '"') return string();
     while (i < text.length && !",]}: \t\r\n".includes(text[i])) ++i;
     const word = text.slice(start, i);
     if (!word) fail("a value is missing");
-    else if (!(word in words)) try { JSON.parse(word); } catch { i = start; fail("this is no JSON value"); i = start + word.length; }
+    else try { return JSON.parse(word); } catch { i = start; fail("this is no JSON value"); i = start + word.length; }
+    return null;
   }
 
   /// Members or entries up to the closing sign.
@@ -51,16 +51,18 @@ export function placesOf(text, caret = -1) {
   function value(pointer, before) {
     blank();
     const start = i;
-    if (text[i] === "{") list("}", (_, from) => member(pointer, from));
-    else if (text[i] === "[") list("]", (count, from) => value(`${pointer}/${count}`, from));
+    let own;
+    if (text[i] === "{") { own = {}; list("}", (_, from) => member(pointer, from, own)); }
+    else if (text[i] === "[") { own = []; list("]", (count, from) => { own[count] = value(`${pointer}/${count}`, from); }); }
     else {
-      scalar();
+      own = scalar();
       note("value", pointer, start === i ? before : start, i);
     }
     places.set(pointer, [start, i]);
+    return own;
   }
 
-  function member(pointer, before) {
+  function member(pointer, before, whole) {
     const start = i;
     if (text[i] !== '"') {
       fail("the name of a member is missing");
@@ -74,14 +76,14 @@ export function placesOf(text, caret = -1) {
     keys.set(own, [start, i]);
     blank();
     if (text[i] !== ":") return fail(": is missing");
-    value(own, ++i);
+    whole[key] = value(own, ++i);
   }
 
-  value("", 0);
+  const document = value("", 0);
   blank();
   if (i < text.length) fail("nothing may follow the document");
   if (caret >= 0 && !at) at = around(caret);
-  return { places, keys, fault, at };
+  return { places, keys, fault, document, at };
 
   /// An empty object's inside.
   function around(place) {

@@ -65,7 +65,7 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
     if (i >= 0) said.replaceChildren(element("span", {}, `${x.name} ${short(x.values[i], 6)}`), ...curves.filter(({ values }) => i < values.length).map(({ name, values }) => element("span", {}, `${name} ${short(values[i], 6)}`)));
   });
   if (onPick) svg.addEventListener("click", (event) => onPick(nearest(event)));
-  return element("div", { className: "plotted" }, curves.length > 1 ? legend(curves) : "", svg, said);
+  return element("div", { className: "plotted" }, legend(curves), svg, said);
 }
 
 const legend = (curves) => aria(element("ul", { className: "legend" }, curves.map(({ name, broken, curve }, i) => element("li", { className: `curve${(curve ?? i) % 5}${broken ? " broken" : ""}` }, name))), { "aria-label": "Curves" });

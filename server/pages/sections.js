@@ -142,6 +142,6 @@ export function figuresSection(summary) {
   const pairs = (own) => Object.entries(own).map(([name, value]) => [name.replaceAll("_", " "), value]);
   return section("figures", "Figures", element("div", { className: "beside" },
     table("Unknowns", ["of", "number"], pairs(unknowns)), table("Residuals, relative", ["of", "size"], pairs(residuals)),
-    table("Seconds", ["for", "time"], pairs(timings)),
-    table("What acts on the body through each part", ["part", "force", "moment"], Object.entries(reactions).map(([name, { force, moment }]) => [name, typeof force === "number" ? force : Array.from(force, (each) => short(each, 6)).join(", "), moment ?? "–"]))));
+    table("Seconds", ["for", "time"], pairs(timings))),
+    table("What acts on the body through each part", ["part", "force", "moment"], Object.entries(reactions).map(([name, { force, moment }]) => [name, typeof force === "number" ? force : Array.from(force, (each) => short(each, 6)).join(", "), moment ?? "–"])));
 }

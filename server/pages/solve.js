@@ -39,7 +39,7 @@ function showHead(solve) {
     : [progress.phase, progress.level && `level ${progress.level.number}`, progress.iteration > 0 && `iteration ${short(progress.iteration)}`, progress.residual > 0 && `residual ${short(progress.residual, 3)}`].filter(Boolean);
   const files = summary ? [["result", "JSON"], ["vtu", "VTU"], ["picture", "Plain picture"], ["contact_csv", "Contact CSV"], ["history_csv", "History CSV"]].map(([key, name]) => fileLink(links[key], name)) : [];
   head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
-    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · "))),
+    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · ")), solve.tags.length ? element("span", { className: "tags" }, solve.tags.map((tag) => element("a", { href: `/v1/solves?${new URLSearchParams({ tag })}` }, tag))) : ""),
     error ? element("p", { className: "notice bad" }, element("strong", {}, `${error.title}. `), error.detail ?? "", (error.errors ?? []).map((each) => element("span", { className: "line" }, element("code", {}, each.pointer ?? ""), ` ${each.detail}`))) : "",
     element("div", { className: "row" }, button, files));
 }

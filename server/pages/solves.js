@@ -15,6 +15,7 @@ const query = new URLSearchParams(location.search);
 const status = element("select", {}, ["", "queued", "running", "succeeded", "failed", "cancelled"].map((value) => element("option", { value }, value || "any")));
 status.value = query.get("status") ?? "";
 const title = element("input", { type: "search", value: query.get("title") ?? "", placeholder: "part of it" });
+const tag = element("input", { type: "search", value: query.get("tag") ?? "", placeholder: "the whole of it" });
 const cancel = element("button", { type: "button" }, "Cancel");
 const remove = element("button", { type: "button" }, "Delete");
 const all = aria(element("input", { type: "checkbox" }), { "aria-label": "Choose all" });
@@ -24,7 +25,7 @@ const said = element("p", { className: "quiet", role: "status" }, "Loading …")
 const body = element("tbody");
 const column = (name, className = "") => aria(element("th", { className }, name), { scope: "col" });
 main.append(element("h1", {}, "Solves"),
-  element("div", { className: "row" }, element("label", {}, "Status ", status), element("label", {}, "Title ", title),
+  element("div", { className: "row" }, element("label", {}, "Status ", status), element("label", {}, "Title ", title), element("label", {}, "Tag ", tag),
     element("span", { className: "row last" }, cancel, remove, compare)), said,
   element("div", { className: "card flush" }, element("table", { className: "solves" }, element("thead", {}, element("tr", {},
     aria(element("th", {}, all), { scope: "col" }), column("Title"), column("State"), column("Progress"), column("Error bound"), column("Posted"))), body)),
@@ -54,14 +55,16 @@ function show(solve) {
     const box = element("input", { type: "checkbox" });
     const link = element("a", { href: solve.links.self });
     const cells = ["Title", "State", "Progress", "Error bound", "Posted"].map((name) => { const cell = element("td"); cell.dataset.name = name; return cell; });
-    cells[0].append(link);
-    own = { row: element("tr", {}, element("td", {}, box), cells), box, link, cells };
+    const tags = element("span", { className: "tags" });
+    cells[0].append(link, tags);
+    own = { row: element("tr", {}, element("td", {}, box), cells), box, link, tags, cells };
     box.addEventListener("change", choose);
     rows.set(solve.id, own);
   }
   own.solve = solve;
   const name = solve.title || "without a title";
   own.link.textContent = name;
+  if (own.tags.children.length !== solve.tags.length) own.tags.replaceChildren(...solve.tags.map((each) => element("a", { href: `/v1/solves?${new URLSearchParams({ tag: each })}` }, each)));
   aria(own.box, { "aria-label": `Choose ${name}` });
   own.cells[1].replaceChildren(state(solve.status));
   own.cells[2].textContent = progressOf(solve);
@@ -84,22 +87,21 @@ function choose() {
   if (!compare.hidden) compare.href = `${own[0].solve.links.self}#with=${own[1].solve.id}`;
 }
 
+const filters = () => Object.fromEntries(Object.entries({ status: status.value, title: title.value.trim(), tag: tag.value.trim() }).filter(([, value]) => value));
+
 let looking = false, again = false;
 
 async function look() {
   if (looking) { again = true; return; }
   looking = true;
   try {
-    const wanted = new URLSearchParams({ limit: String(count) });
-    if (status.value) wanted.set("status", status.value);
-    const { solves, links } = await getJson(`/v1/solves?${wanted}`);
-    const part = title.value.trim().toLowerCase();
-    const own = solves.filter((solve) => solve.title.toLowerCase().includes(part)).map(show);
+    const { solves, links } = await getJson(`/v1/solves?${new URLSearchParams({ ...filters(), limit: count })}`);
+    const own = solves.map(show);
     if (own.length !== body.children.length || own.some((row, i) => row !== body.children[i])) body.replaceChildren(...own);
     for (const [id, { row }] of rows) if (!row.isConnected) rows.delete(id);
     more.hidden = !links.next || count >= 1000;
     const open = solves.filter(isOpen).length;
-    said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : solves.length || status.value ? "None is like that." : "Nothing was posted yet.";
+    said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : Object.keys(filters()).length ? "None is like that." : "Nothing was posted yet.";
   } catch (error) {
     said.textContent = error instanceof TypeError ? "The service cannot be reached; trying again." : error.message;
   }
@@ -135,8 +137,8 @@ all.addEventListener("change", () => {
   choose();
 });
 more.addEventListener("click", () => { count = Math.min(1000, 4 * count); look(); });
-for (const control of [status, title]) control.addEventListener("input", () => {
-  const wanted = new URLSearchParams(Object.entries({ status: status.value, title: title.value.trim() }).filter(([, value]) => value));
+for (const control of [status, title, tag]) control.addEventListener("input", () => {
+  const wanted = new URLSearchParams(filters());
   history.replaceState(null, "", wanted.size ? `?${wanted}` : location.pathname);
   look();
 });

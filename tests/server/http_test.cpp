@@ -17,7 +17,7 @@ TEST_F(Http, UnknownPathsAre404) {
 TEST_F(Http, WrongMethodsAre405WithAllow) {
   const auto reply = client_.Put("/v1/solves", "{}", "application/json");
   expect_problem(reply, 405);
-  EXPECT_EQ(reply->get_header_value("Allow"), "POST, GET, HEAD, OPTIONS");
+  EXPECT_EQ(reply->get_header_value("Allow"), "POST, GET, HEAD, DELETE, OPTIONS");
   expect_problem(client_.Patch("/v1/validate", "{}", "application/json"), 405);
   expect_problem(client_.Delete("/healthz"), 405);
   EXPECT_NE(

@@ -1,0 +1,297 @@
+// The picture of a solve: its pixels, its values, its controls.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { after, before, test } from "node:test";
+import { drawn, launch, newPage, pixelsOf, Service } from "./browser.js";
+import { colour, scaleOf } from "./colours.js";
+
+let service, browser, page;
+const solves = {};
+before(async () => {
+  [service, browser] = await Promise.all([Service.start(), launch()]);
+  page = await newPage(browser, { width: 640, height: 560, acceptDownloads: true });
+  const membrane = { ...(await service.example("paper-nonconforming")), mesh: { divisions: [4, 4], pattern: "right" } };
+  solves.constant = await service.solve(membrane);
+  solves.linear = await service.solve({ ...membrane, scheme: "conforming", solver: { method: "active_set" } });
+  solves.body = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" } });
+  solves.other = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" }, material: { young: 100, poisson: 0.3, plane: "strain" } });
+});
+after(async () => {
+  await browser.close();
+  await service.end();
+});
+const wellDone = () => {
+  assert.deepEqual(page.faults, []);
+  assert.deepEqual(page.foreign, []);
+};
+
+const open = async (id, hash = "") => {
+  await page.goto("about:blank");
+  await page.goto(`${service.url}/v1/solves/${id}${hash && `#${hash}`}`);
+  await drawn(page);
+};
+const frame = () => page.locator(".frame").first();
+const result = (id, fields) => service.call(`/v1/solves/${id}/result?fields=${fields}`);
+const settled = () => page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve))); }));
+
+/// Where a place of the unit square is in its flat picture.
+async function projection() {
+  const { width, height } = await frame().boundingBox();
+  const scale = (0.92 * Math.min(width, height)) / 2;
+  return ([x, y]) => [width / 2 + scale * (2 * x - 1), height / 2 - scale * (2 * y - 1)];
+}
+
+/// The least distance of a pixel's middle from the edges of a triangle; negative outside.
+function inside([x, y], corners) {
+  const sides = corners.map((a, k) => {
+    const b = corners[(k + 1) % 3];
+    return ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / Math.hypot(b[0] - a[0], b[1] - a[1]);
+  });
+  return Math.max(Math.min(...sides), Math.min(...sides.map((side) => -side)));
+}
+
+async function coloursByTriangle(id) {
+  const { mesh } = await result(id, "mesh"), at = await projection(), pixels = await pixelsOf(page, frame());
+  return mesh.triangles.map((triangle) => {
+    const corners = triangle.map((p) => at(mesh.points[p])), found = new Set();
+    const [least, most] = [Math.min, Math.max].map((of) => [0, 1].map((c) => Math.floor(of(...corners.map((corner) => corner[c])))));
+    for (let y = least[1]; y <= most[1]; ++y)
+      for (let x = least[0]; x <= most[0]; ++x)
+        if (inside([x + 0.5, y + 0.5], corners) > 3) found.add(pixels.data.subarray(4 * (y * pixels.width + x), 4 * (y * pixels.width + x) + 3).join());
+    return found;
+  });
+}
+
+test("A constant field has one colour in each triangle, that of its value, and jumps between them", async () => {
+  await open(solves.constant, "surface=0&mesh=0&field=displacement");
+  const { displacement: { values } } = await result(solves.constant, "displacement");
+  const { low, high, diverges } = scaleOf(Math.min(...values), Math.max(...values));
+  const found = await coloursByTriangle(solves.constant);
+  found.forEach((own, t) => {
+    assert.equal(own.size, 1, `triangle ${t}: ${[...own]}`);
+    const expected = colour((values[t] - low) / (high - low), diverges);
+    [...own][0].split(",").forEach((each, i) => assert.ok(Math.abs(each - expected[i]) <= 3, `triangle ${t}: ${[...own]}, not ${expected}`));
+  });
+  assert.ok(new Set(found.map((own) => [...own][0])).size > 10);
+  wellDone();
+});
+
+test("A linear field has many, and so has a constant one that is smoothed", async () => {
+  await open(solves.linear, "surface=0&mesh=0&field=displacement");
+  assert.ok((await coloursByTriangle(solves.linear)).filter((own) => own.size > 3).length > 16);
+  await open(solves.constant, "surface=0&mesh=0&field=displacement&smooth=1");
+  assert.ok((await coloursByTriangle(solves.constant)).filter((own) => own.size > 3).length > 16);
+  wellDone();
+});
+
+test("The colours are those of the service's own pictures", async () => {
+  const svg = await (await fetch(`${service.url}/v1/solves/${solves.body}/picture.svg?field=von_mises`)).text();
+  for (let band = 0; band < 32; ++band) {
+    const [, hex] = svg.match(new RegExp(`\\.c${band}\\{fill:#([0-9a-f]{6})`));
+    const expected = colour(band / 31, false), own = [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16));
+    own.forEach((each, i) => assert.ok(Math.abs(each - expected[i]) <= 1, `${band}: ${own} ${expected}`));
+  }
+});
+
+/// What is told of the place under the pointer.
+async function pick(x, y) {
+  const box = await frame().boundingBox();
+  await page.mouse.move(box.x + x, box.y + y);
+  await settled();
+  const told = page.locator("figure .readout").first();
+  return { ...(await told.evaluate((own) => ({ ...own.dataset }))), text: await told.innerText() };
+}
+const shown = (text) => {
+  const superscripts = { "⁻": "-", "⁰": 0, "¹": 1, "²": 2, "³": 3, "⁴": 4, "⁵": 5, "⁶": 6, "⁷": 7, "⁸": 8, "⁹": 9 };
+  const number = text.trim().split("\n").at(-1).match(/(−?[\d.]+)(?:\u202f·\u202f10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?$/);
+  return Number(`${number[1].replace("−", "-")}e${[...(number[2] ?? "0")].map((c) => superscripts[c] ?? c).join("")}`);
+};
+const close = (a, b) => assert.ok(Math.abs(a - b) <= 5.1e-6 * Math.max(Math.abs(a), Math.abs(b), 1e-300) , `${a} and ${b}`);
+
+test("The value under the pointer is that of the JSON to six digits", async () => {
+  await open(solves.constant, "surface=0&field=displacement");
+  const constant = await result(solves.constant, "mesh,displacement"), box = await frame().boundingBox();
+  for (const [x, y] of [[0.31, 0.42], [0.5, 0.6], [0.63, 0.2]]) {
+    const told = await pick(x * box.width, y * box.height);
+    assert.equal(Number(told.value), constant.displacement.values[told.triangle]);
+    close(shown(told.text), constant.displacement.values[told.triangle]);
+    const corners = constant.mesh.triangles[told.triangle].map((p) => constant.mesh.points[p]);
+    assert.ok(inside([Number(told.x), Number(told.y)], corners) > -0.01);
+  }
+  for (const [field, member] of [["von_mises", (all) => all.von_mises], ["stress_xy", (all) => all.stress.at_centroids.map((own) => own[2])], ["principal_second", (all) => all.principal.map((own) => own[1])], ["error", (all) => all.error_squares.map(Math.sqrt)]]) {
+    await open(solves.body, `field=${field}`);
+    const values = member(await result(solves.body, "stress,principal,von_mises,error_squares"));
+    const told = await pick(box.width / 2, box.height / 2);
+    close(shown(told.text), values[told.triangle]);
+  }
+  await open(solves.linear, "field=displacement");
+  const linear = await result(solves.linear, "mesh,displacement"), told = await pick(0.45 * box.width, 0.47 * box.height);
+  const [a, b, c] = linear.mesh.triangles[told.triangle].map((p) => linear.mesh.points[p]);
+  const area = (p, q, r) => (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]), own = [Number(told.x), Number(told.y)];
+  const shares = [area(own, b, c), area(a, own, c), area(a, b, own)].map((each) => each / area(a, b, c));
+  close(Number(told.value), linear.displacement.values[told.triangle].reduce((sum, value, k) => sum + shares[k] * value, 0));
+  wellDone();
+});
+
+test("Every field can be shown, and every control does what it says", async () => {
+  await open(solves.body);
+  const choice = page.getByLabel("Field");
+  for (const field of await choice.locator("option").evaluateAll((all) => all.map((own) => own.value))) {
+    await choice.selectOption(field);
+    await settled();
+    assert.equal(await page.locator(".field").innerText(), await choice.evaluate((own) => own.selectedOptions[0].text));
+  }
+  assert.equal(await choice.locator("option").count(), 11);
+  const look = async () => (await frame().screenshot()).toString("base64");
+  for (const name of ["Mesh", "Unknowns", "Principal directions", "Smoothed"]) {
+    const before = await look(), button = page.getByRole("button", { name });
+    const pressed = await button.getAttribute("aria-pressed");
+    await button.click();
+    await settled();
+    assert.notEqual(await button.getAttribute("aria-pressed"), pressed);
+    assert.notEqual(await look(), before, name);
+  }
+  let before = await look();
+  await page.getByLabel("Deformed ×").fill("9");
+  await page.getByLabel("Deformed ×").press("Enter");
+  await settled();
+  assert.notEqual(await look(), before);
+  await page.getByLabel("Lowest value of the scale").fill("0");
+  await page.getByLabel("Highest value of the scale").fill("8");
+  await page.getByLabel("Highest value of the scale").press("Enter");
+  await settled();
+  assert.deepEqual(await page.locator(".ticks li").allInnerTexts(), ["8", "6", "4", "2", "0"]);
+  assert.ok(await page.getByLabel("Fixed").isChecked());
+  await page.getByLabel("Fixed").uncheck();
+  await settled();
+  before = await look();
+  await frame().focus();
+  for (const key of ["ArrowLeft", "+", "ArrowUp", "-", "m"]) {
+    await page.keyboard.press(key);
+    await settled();
+    assert.notEqual(await look(), before, key);
+    before = await look();
+  }
+  await page.getByRole("button", { name: "Whole view" }).click();
+  await settled();
+  assert.notEqual(await look(), before);
+  wellDone();
+});
+
+test("A membrane is a surface that is turned, moved and laid flat", async () => {
+  await open(solves.constant);
+  const look = async () => { await settled(); return (await frame().screenshot()).toString("base64"); };
+  const box = await frame().boundingBox(), first = await look();
+  const drag = async () => {
+    await page.mouse.move(box.x + 200, box.y + 120);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 300, box.y + 170, { steps: 4 });
+    await page.mouse.up();
+  };
+  await drag();
+  const turned = await look();
+  assert.notEqual(turned, first);
+  await page.keyboard.down("Shift");
+  await drag();
+  await page.keyboard.up("Shift");
+  const moved = await look();
+  assert.notEqual(moved, turned);
+  await page.mouse.wheel(0, -400);
+  assert.notEqual(await look(), moved);
+  await page.getByRole("button", { name: "Surface" }).click();
+  assert.notEqual(await look(), moved);
+  await page.mouse.dblclick(box.x + 200, box.y + 200);
+  await page.getByRole("button", { name: "Surface" }).click();
+  await page.mouse.move(0, 0);
+  assert.equal(await look(), first);
+  wellDone();
+});
+
+test("Two fingers zoom", async () => {
+  const own = await newPage(browser, { width: 390, height: 800, hasTouch: true });
+  await own.goto(`${service.url}/v1/solves/${solves.body}`);
+  await drawn(own);
+  const box = await own.locator(".frame").boundingBox(), debug = await own.context().newCDPSession(own);
+  const points = (far) => [[-far, 0], [far, 0]].map(([x], id) => ({ x: box.x + box.width / 2 + x, y: box.y + 100, id }));
+  await debug.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: points(20) });
+  for (const far of [30, 50, 70]) await debug.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: points(far) });
+  await debug.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  await own.waitForFunction(() => /zoom=[23]/.test(location.hash));
+  assert.deepEqual(own.faults, []);
+  await own.context().close();
+});
+
+test("The address keeps the view", async () => {
+  await open(solves.body, "field=stress_yy&mesh=0&zoom=2&x=0.1&lift=3&crosses=1");
+  await settled();
+  const before = await frame().screenshot();
+  await page.getByRole("button", { name: "Unknowns" }).click();
+  await page.getByRole("button", { name: "Unknowns" }).click();
+  await page.mouse.move(0, 0);
+  await page.waitForTimeout(300);
+  const address = page.url();
+  await page.goto("about:blank");
+  await page.goto(address);
+  await drawn(page);
+  await settled();
+  assert.ok(before.equals(await frame().screenshot()));
+  wellDone();
+});
+
+test("The picture is kept as PNG and SVG", async () => {
+  await open(solves.body, "field=von_mises");
+  const [png] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "PNG" }).click()]);
+  assert.match(png.suggestedFilename(), /-von_mises\.png$/);
+  assert.deepEqual([...(await readFile(await png.path())).subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
+  const [svg] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+  const text = await readFile(await svg.path(), "utf8"), { mesh } = await result(solves.body, "mesh");
+  assert.equal(await page.evaluate((own) => new DOMParser().parseFromString(own, "image/svg+xml").querySelector("parsererror")?.textContent, text), undefined);
+  const filled = [...text.matchAll(/<path class="c\d+" d="([^"]*)"/g)].flatMap(([, path]) => path.split("M").slice(1));
+  assert.equal(filled.length, mesh.triangles.length);
+  wellDone();
+});
+
+test("Two solves are side by side with one view and one scale, and their difference is shown", async () => {
+  await open(solves.body, `with=${solves.other}&field=displacement_y`);
+  await page.waitForFunction(() => document.querySelectorAll("figure .ticks li").length === 10);
+  await settled();
+  const ticks = () => page.locator("figure").evaluateAll((all) => all.map((own) => own.querySelector(".ticks").innerText));
+  const [one, two] = await ticks();
+  assert.equal(one, two);
+  await page.getByRole("button", { name: "Difference" }).click();
+  await settled();
+  const told = await page.locator(".frame").nth(1).boundingBox();
+  await page.mouse.move(told.x + told.width / 2, told.y + told.height / 2);
+  await settled();
+  const { triangle, value, x, y } = await page.locator("figure .readout").nth(1).evaluate((own) => ({ ...own.dataset }));
+  const [a, b] = await Promise.all([solves.body, solves.other].map((id) => result(id, "mesh,displacement")));
+  const corners = a.mesh.triangles[triangle].map((p) => a.mesh.points[p]), area = (p, q, r) => (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]);
+  const own = [Number(x), Number(y)], [p, q, r] = corners, shares = [area(own, q, r), area(p, own, r), area(p, q, own)].map((each) => each / area(p, q, r));
+  const at = ({ displacement: { values } }) => values[triangle].reduce((sum, pair, k) => sum + shares[k] * pair[1], 0);
+  assert.ok(Math.abs(Number(value) - (at(b) - at(a))) <= 1e-9 * Math.abs(at(a)) + 1e-12, `${value} ${at(b) - at(a)}`);
+  wellDone();
+});
+
+test("Below it stand the bound in words, contact, sweep, levels and study, and their numbers in tables", async () => {
+  await open(solves.body);
+  await page.locator("#bound").getByText(/^Proved: stress and displacement together are off by at most/).waitFor();
+  await page.getByText("Numbers of bottom").click();
+  const { contact: { bottom } } = await result(solves.body, "contact");
+  assert.equal(await page.locator("#contact tbody tr").count(), bottom.pressure.length);
+  const id = await service.solve(await service.example("gap-sweep"));
+  await open(id);
+  await page.getByLabel("Entry", { exact: true }).last().selectOption("3");
+  await page.locator("#sweep h3").first().getByText("tilted", { exact: true }).waitFor();
+  await page.waitForFunction(() => location.hash.includes("entry=3"));
+  const adaptive = await service.solve(await service.example("adaptive-mesh"));
+  await open(adaptive);
+  await page.getByLabel("Level", { exact: true }).fill("2");
+  const { summary: { levels } } = await result(adaptive, "summary");
+  await page.locator("#levels").getByText(`${levels.triangles[1]} triangles`).waitFor();
+  const study = await service.solve(await service.example("convergence-study"));
+  await open(study);
+  assert.equal(await page.locator("#study .plot").count(), 2);
+  await page.getByText(/^Fitted rates/).first().waitFor();
+  wellDone();
+});

@@ -1,0 +1,115 @@
+// The list of solves, and texts of clients that look like HTML.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { drawn, launch, newPage, Service } from "./browser.js";
+
+const html = '<img src=x onerror="window.hurt=1"><script>window.hurt=1</script>&amp;"';
+const token = "0123456789abcdef0123456789abcdef";
+let service, browser, page;
+before(async () => {
+  [service, browser] = await Promise.all([Service.start("--workers", "1"), launch()]);
+  page = await newPage(browser);
+});
+after(async () => {
+  await browser.close();
+  await service.end();
+});
+const wellDone = () => {
+  assert.deepEqual(page.faults, []);
+  assert.deepEqual(page.foreign, []);
+};
+const row = (title) => page.getByRole("row").filter({ hasText: title });
+const small = { model: "membrane", domain: { type: "rectangle", size: [1, 1] }, mesh: { divisions: [4, 4] }, material: { stiffness: 1 }, load: { body: -1 }, boundary: { left: { type: "fixed" }, bottom: { type: "contact" } }, scheme: "nonconforming" };
+/// Runs until it is cancelled.
+const endless = { ...small, mesh: { divisions: [60, 60] }, solver: { method: "uzawa", rho: 1e-9, augmentation: 1, tolerance: 1e-300, max_iterations: 1000000 } };
+
+test("Solves appear, run and end before one's eyes", async () => {
+  await page.goto(`${service.url}/v1/solves`);
+  await page.getByText("Nothing was posted yet.").waitFor();
+  await service.call("/v1/solves", "POST", { ...endless, title: "runs on" });
+  await service.call("/v1/solves", "POST", { ...small, title: "waits", tags: ["seal", "b"] });
+  await row("runs on").getByText(/iteration [\d\u202f]+/).waitFor();
+  await row("waits").getByText("queued").waitFor();
+  await row("runs on").getByRole("checkbox").check();
+  await page.getByRole("button", { name: "Cancel 1" }).click();
+  await row("runs on").getByText("cancelled", { exact: true }).waitFor();
+  await row("waits").getByText("succeeded").waitFor();
+  await row("waits").getByText(/^[\d.]+ %$/).waitFor();
+  wellDone();
+});
+
+test("They are picked by status, title and tag", async () => {
+  await page.getByLabel("Status").selectOption("succeeded");
+  await page.getByText("1 shown").waitFor();
+  assert.equal(new URL(page.url()).search, "?status=succeeded");
+  await page.getByLabel("Status").selectOption("");
+  await page.getByLabel("Title").fill("RUNS");
+  await page.getByText("1 shown").waitFor();
+  assert.equal(await row("waits").count(), 0);
+  await page.getByLabel("Title").fill("");
+  await row("waits").getByRole("link", { name: "seal" }).click();
+  await page.getByText("1 shown").waitFor();
+  assert.equal(await page.getByLabel("Tag").inputValue(), "seal");
+  await page.getByLabel("Tag").fill("none such");
+  await page.getByText("None is like that.").waitFor();
+  wellDone();
+});
+
+test("Several are deleted at once, after a question", async () => {
+  await page.goto(`${service.url}/v1/solves`);
+  await row("waits").waitFor();
+  await page.getByLabel("Choose all").check();
+  await page.getByRole("button", { name: "Delete 2" }).click();
+  await page.getByRole("button", { name: "Keep" }).click();
+  assert.equal((await service.call("/v1/solves")).solves.length, 2);
+  await page.getByRole("button", { name: "Delete 2" }).click();
+  await page.getByRole("dialog").getByRole("button", { name: "Delete" }).click();
+  await page.getByText("Nothing was posted yet.").waitFor();
+  assert.equal((await service.call("/v1/solves")).solves.length, 0);
+  wellDone();
+});
+
+test("Titles, tags, names of parts and faults with HTML in them stay texts", async () => {
+  const polygon = { type: "polygon", vertices: [[0, 0], [1, 0], [1, 1], [0, 1]], sides: [html, "b", "c", "d"] };
+  const problem = { ...small, title: html, tags: ["<b>bold</b>"], domain: polygon, mesh: { size: 0.3 }, boundary: { c: { type: "fixed" }, [html]: { type: "contact" } } };
+  const id = await service.solve(problem);
+  const failed = await service.call("/v1/solves?wait=60", "POST", { ...problem, title: `fails ${html}`, boundary: { [html]: { type: "contact" } }, load: { body: 1 } });
+  assert.equal(failed.status, "failed");
+  await page.goto(`${service.url}/v1/solves`);
+  await page.getByRole("link", { name: html, exact: true }).waitFor();
+  await page.getByRole("link", { name: "<b>bold</b>" }).first().waitFor();
+  await page.goto(`${service.url}/v1/solves/${failed.id}`);
+  await page.getByRole("heading", { name: `fails ${html}` }).waitFor();
+  await page.goto(`${service.url}/v1/solves/${id}`);
+  await drawn(page);
+  await page.locator("#contact").getByRole("heading", { name: html }).waitFor();
+  await page.goto(`${service.url}/v1/examples/gap-sweep`);
+  await page.getByLabel("Problem, as JSON").fill(JSON.stringify({ ...small, [html]: 1 }));
+  await page.locator(".faults").getByText("<img src=x onerror").waitFor();
+  assert.equal(await page.evaluate(() => window.hurt), undefined);
+  assert.equal(await page.locator("img[src=x], #main script, #main b").count(), 0);
+  wellDone();
+});
+
+test("A token is asked for once", async () => {
+  const { mkdtempSync, writeFileSync } = await import("node:fs");
+  const file = `${mkdtempSync("/tmp/pages-")}/tokens`;
+  writeFileSync(file, `${token}\n`);
+  const guarded = await Service.start("--token-file", file);
+  const own = await newPage(browser);
+  await own.goto(`${guarded.url}/v1/solves`);
+  await own.getByLabel("Token").fill("wrong-but-long-enough");
+  await own.getByRole("button", { name: "Go on" }).click();
+  await own.getByText("holds none of the tokens").waitFor();
+  await own.getByLabel("Token").fill(token);
+  await own.getByRole("button", { name: "Go on" }).click();
+  await own.getByText("Nothing was posted yet.").waitFor();
+  await own.goto(`${guarded.url}/v1/examples/given-mesh`);
+  await own.getByText(/^Ready: /).waitFor();
+  await own.getByRole("button", { name: "Solve" }).click();
+  await own.getByText("succeeded").waitFor();
+  await drawn(own);
+  assert.deepEqual(own.faults, []);
+  await guarded.end();
+});
