@@ -45,22 +45,20 @@ std::shared_ptr<void> PendingConnections::take_place() {
   std::shared_ptr<void> place = open_.try_acquire();
   if (place) return place;
   const auto lock = lock_before_thread();
-  const auto oldest = std::ranges::min_element(
-      entries_, {}, [](const Entries::value_type& entry) { return entry.second.since; });
-  if (oldest == entries_.end()) return nullptr;
-  remove(oldest);
+  if (line_.empty()) return nullptr;
+  remove(entries_.find(line_.front()));
   return open_.try_acquire();
 }
 
 void PendingConnections::admit(std::shared_ptr<Connection> connection) {
   const auto now = Clock::now();
-  enter({std::move(connection), Stay::receiving, now, now + limits_.idle});
+  enter({std::move(connection), Stay::receiving, now + limits_.idle});
 }
 
 void PendingConnections::linger(std::shared_ptr<Connection> connection) {
   connection->end_sending();
   const auto now = Clock::now();
-  enter({std::move(connection), Stay::lingering, now, now + limits_.linger});
+  enter({std::move(connection), Stay::lingering, now + limits_.linger});
 }
 
 void PendingConnections::stop() {
@@ -114,6 +112,7 @@ void PendingConnections::enter(Entry entry) {
   if (stopping_) return;
   const int socket = entry.connection->socket();
   const auto entered = entries_.emplace(socket, std::move(entry)).first;
+  entered->second.in_line = line_.insert(line_.end(), socket);
   epoll_event readable{EPOLLIN, {.fd = socket}};
   epoll_ctl(epoll_, EPOLL_CTL_ADD, socket, &readable);
   // What came together with the request before.
@@ -276,6 +275,7 @@ void PendingConnections::dismiss_largest() {
 void PendingConnections::remove(Entries::iterator entry) {
   bytes_ -= entry->second.counted;
   if (entry->second.stay == Stay::waiting_for_room) --queued_;
+  line_.erase(entry->second.in_line);
   epoll_ctl(epoll_, EPOLL_CTL_DEL, entry->first, nullptr);
   entries_.erase(entry);
 }

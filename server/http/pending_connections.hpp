@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -69,8 +70,8 @@ class PendingConnections {
   struct Entry {
     std::shared_ptr<Connection> connection;
     Stay stay;
-    Clock::time_point since;
     Clock::time_point deadline;
+    std::list<int>::iterator in_line = {};
     std::optional<Clock::time_point> begun = {};  ///< when the first bytes of the request came
     bool head_judged = false;
     std::shared_ptr<void> body_room = {};
@@ -109,6 +110,7 @@ class PendingConnections {
   std::mutex mutex_;
   bool stopping_ = false;
   Entries entries_;
+  std::list<int> line_;     ///< their sockets, who has waited longest first
   std::size_t bytes_ = 0;   ///< that the clients have sent
   std::size_t queued_ = 0;  ///< with long bodies
   std::thread thread_;

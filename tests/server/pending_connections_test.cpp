@@ -24,18 +24,19 @@ class PendingConnectionsTest : public testing::Test {
 
   static PendingLimits limits() {
     PendingLimits little;
+    little.connections = 3;
     little.long_bodies = 200'000;
     little.head_time = little.let_in = 1s;
     return little;
   }
 
   /// The client's end of a new connection, on which this was said.
-  int enter(const std::string& said) {
+  int enter(const std::string& said, std::shared_ptr<void> place = nullptr) {
     std::array<int, 2> ends{};
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends.data()), 0);
     sockets_.push_back(ends[0]);
     pending_.admit(
-        std::make_shared<Connection>(ends[1], stop_event_, MessageLimits(), slow_readers_, nullptr));
+        std::make_shared<Connection>(ends[1], stop_event_, MessageLimits(), slow_readers_, std::move(place)));
     ::send(ends[0], said.data(), said.size(), 0);
     return ends[0];
   }
@@ -76,6 +77,21 @@ class PendingConnectionsTest : public testing::Test {
 TEST_F(PendingConnectionsTest, ARequestThatComesTooLateIsRefused) {
   enter("GET / HTTP/1.1\r\nHost: l");
   EXPECT_EQ(status_of(next()), 408);
+}
+
+/// Whoever has waited longest makes room for who comes, whatever the numbers of their sockets.
+TEST_F(PendingConnectionsTest, AreClosedInTheOrderInWhichTheyCame) {
+  const auto is_closed = [](int client) {
+    char byte = 0;
+    return ::recv(client, &byte, 1, MSG_DONTWAIT) == 0;
+  };
+  std::vector<int> clients;
+  for (int i = 0; i < 6; ++i) {
+    std::shared_ptr<void> place = pending_.take_place();
+    ASSERT_TRUE(place);
+    clients.push_back(enter("", std::move(place)));
+    for (int k = 0; k <= i; ++k) EXPECT_EQ(is_closed(clients[k]), k <= i - 3) << k << " of " << i;
+  }
 }
 
 /// RFC 9110, 9.3.2.
