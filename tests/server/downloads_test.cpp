@@ -46,7 +46,7 @@ TEST_F(Downloads, HoldTheResult) {
   EXPECT_TRUE(history.starts_with("iteration,clearance_change,")) << history;
   EXPECT_NE(history.find("\r\n3,0,"), std::string::npos);
   const std::string vtu = get(path + "/result.vtu")->body;
-  EXPECT_NE(vtu.find("<Piece NumberOfPoints=\"3\" NumberOfCells=\"1\">"), std::string::npos);
+  EXPECT_NE(vtu.find("<Piece NumberOfPoints=\"9\" NumberOfCells=\"4\">"), std::string::npos);
   EXPECT_TRUE(vtu.ends_with("</VTKFile>\n"));
 }
 
