@@ -180,7 +180,13 @@ export function editor({ text }) {
     }
   });
 
-  const fill = (own) => { area.value = own; show([]); check(); };
+  // What has been written before it came is kept.
+  const fill = (own) => {
+    if (area.value) return;
+    area.value = own;
+    show([]);
+    check();
+  };
   if (text) check();
   return { whole, fill };
 }

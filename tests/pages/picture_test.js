@@ -127,7 +127,7 @@ test("The value under the pointer is that of the JSON to six digits", async () =
     const told = await pick(box.width / 2, box.height / 2);
     close(shown(told.text), values[told.triangle]);
   }
-  await open(solves.linear, "field=displacement");
+  await open(solves.linear, "surface=0&field=displacement");
   const linear = await result(solves.linear, "mesh,displacement"), told = await pick(0.45 * box.width, 0.47 * box.height);
   const [a, b, c] = linear.mesh.triangles[told.triangle].map((p) => linear.mesh.points[p]);
   const area = (p, q, r) => (q[0] - p[0]) * (r[1] - p[1]) - (r[0] - p[0]) * (q[1] - p[1]), own = [Number(told.x), Number(told.y)];

@@ -107,6 +107,6 @@ test("The interface is shown and can be tried", async () => {
   const call = page.locator("#validateProblem");
   await call.getByText("Try it").click();
   await call.getByRole("button", { name: "Send" }).click();
-  await call.getByText(/^200/).waitFor();
+  await call.locator("pre").filter({ hasText: /^200/ }).waitFor();
   wellDone();
 });
