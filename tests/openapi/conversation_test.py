@@ -308,7 +308,7 @@ class Conversation(unittest.TestCase):
         for path in ["/", "/docs", "/pages/page.css", "/pages/shell.js", "/v1/examples/gap-sweep/picture.svg", "/openapi.json", "/healthz", "/readyz", "/metrics"]:
             self.call("GET", path, 200)
         self.call("GET", "/pages/none", 404)
-        for path in ["/v1/solves", "/v1/solves/none", "/v1/examples/gap-sweep"]:
+        for path in ["/v1/solves", "/v1/solves/00000000000000000000000000", "/v1/examples/gap-sweep"]:
             self.call("GET", path, 200, Accept="text/html,*/*;q=0.8")
 
 
