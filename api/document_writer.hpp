@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,6 +47,13 @@ class DocumentWriter {
   template <typename Value>
   DocumentWriter& member(std::string_view name, const Value& of_member) {
     return key(name).value(of_member);
+  }
+
+  /// An array of texts.
+  DocumentWriter& texts(const std::vector<std::string>& all) {
+    begin_array();
+    for (const std::string& text : all) value(text);
+    return end_array();
   }
 
   /// An array of this shape, its numbers row by row. Throws std::logic_error for one that is not finite.

@@ -40,11 +40,7 @@ void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::ve
       .member("seconds", seconds)
       .end_object();
   if (!runs.empty()) out.member("study_runs", runs.size());
-  if (!left.empty()) {
-    out.key("notes").begin_array();
-    for (const std::string& note : left) out.value(note);
-    out.end_array();
-  }
+  if (!left.empty()) out.key("notes").texts(left);
   out.end_object();
 }
 

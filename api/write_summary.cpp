@@ -7,12 +7,6 @@ namespace signorini::api {
 
 namespace {
 
-void write_notes(DocumentWriter& out, const std::vector<std::string>& notes) {
-  out.begin_array();
-  for (const std::string& note : notes) out.value(note);
-  out.end_array();
-}
-
 void write_residuals(DocumentWriter& out, const Residuals& residuals) {
   const auto& [equilibrium, constitutive, penetration, tension, complementarity, symmetry] = residuals;
   out.begin_object()
@@ -65,11 +59,7 @@ void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
       .member("value", bound.value)
       .member("relative", bound.relative)
       .member("guaranteed", bound.guaranteed);
-  if (!bound.guaranteed) {
-    out.key("unmet").begin_array();
-    for (const std::string& reason : bound.unmet) out.value(reason);
-    out.end_array();
-  }
+  if (!bound.guaranteed) out.key("unmet").texts(bound.unmet);
   out.member("energy_lower", bound.energy_lower).member("energy_upper", bound.energy_upper);
   write_bound_parts(out.key("parts"), bound.parts);
   out.end_object();
@@ -136,7 +126,7 @@ void write_summary(DocumentWriter& out, const Summary& summary) {
                error_bound, parts, levels, reused, timings, peak_memory_bytes] = summary;
   out.begin_object().member("outcome", name(outcome));
   if (!advice.empty()) out.member("advice", advice);
-  if (!notes.empty()) write_notes(out.key("notes"), notes);
+  if (!notes.empty()) out.key("notes").texts(notes);
   out.member("method", method).member("iterations", iterations).member("triangles", triangles);
   write_unknowns(out.key("unknowns"), unknowns);
   out.member("energy", energy);

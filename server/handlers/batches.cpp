@@ -37,12 +37,6 @@ void write_links(api::DocumentWriter& out, const std::string& id) {
   out.begin_object().member("self", self).member("results", self + "/results").end_object();
 }
 
-void write_texts(api::DocumentWriter& out, const std::vector<std::string>& texts) {
-  out.begin_array();
-  for (const std::string& text : texts) out.value(text);
-  out.end_array();
-}
-
 /// How many of its solves are where; those that are no longer kept are `deleted`.
 void write_counts(api::DocumentWriter& out, const Batch& batch, const JobCounts& counts) {
   std::size_t there = 0;
@@ -65,7 +59,7 @@ Response post_batch(Service& service, const Request& request) {
   taken.key = key;
   const Batch batch = submit(service, request, std::move(taken));
   Response response = document_response(request, 202, [batch](api::DocumentWriter& out) {
-    write_texts(out.begin_object().member("id", batch.id).key("solves"), batch.jobs);
+    out.begin_object().member("id", batch.id).key("solves").texts(batch.jobs);
     write_links(out.key("links"), batch.id);
     out.end_object();
   });
@@ -79,10 +73,10 @@ Response get_batch(Service& service, const Request& request) {
   const JobCounts counts = service.store.count_of_batch(batch.id);
   return document_response(request, 200, [batch, counts](api::DocumentWriter& out) {
     out.begin_object().member("id", batch.id).member("title", batch.title);
-    write_texts(out.key("tags"), batch.tags);
+    out.key("tags").texts(batch.tags);
     out.member("created_at", iso8601(batch.created)).member("count", batch.jobs.size());
     write_counts(out.key("counts"), batch, counts);
-    write_texts(out.key("solves"), batch.jobs);
+    out.key("solves").texts(batch.jobs);
     write_links(out.key("links"), batch.id);
     out.end_object();
   });

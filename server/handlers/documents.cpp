@@ -90,9 +90,7 @@ void write_progress_members(DocumentWriter& out, const Progress& progress) {
 void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
   const Verdict& verdict = job.verdict;
   out.begin_object().member("id", job.id).member("status", name(job.status)).member("title", job.title);
-  out.key("tags").begin_array();
-  for (const std::string& tag : job.tags) out.value(tag);
-  out.end_array().member("created_at", iso8601(job.created));
+  out.key("tags").texts(job.tags).member("created_at", iso8601(job.created));
   member(out, "started_at", text_of(job.started));
   member(out, "finished_at", text_of(job.finished));
   out.key("progress").begin_object();
