@@ -30,10 +30,16 @@ std::optional<std::string> tag_of(const Request& request) {
   return tag;
 }
 
-ListQuery list_query(const Request& request) {
-  allow_only(request.query, {"status", "tag", "title", "limit", "after"});
+/// All solves that the client may see.
+ListQuery what_may_be_seen(const Request& request) {
   ListQuery query;
   if (!request.identity.sees_all()) query.owner = request.identity.name;
+  return query;
+}
+
+ListQuery list_query(const Request& request) {
+  allow_only(request.query, {"status", "tag", "title", "limit", "after"});
+  ListQuery query = what_may_be_seen(request);
   if (const auto status = parameter(request.query, "status")) query.status = status_of_name(*status);
   query.tag = tag_of(request);
   query.title = parameter(request.query, "title");
@@ -79,10 +85,9 @@ bool asks_for_many(const Query& query) {
 
 Response delete_tagged(Service& service, const Request& request) {
   allow_only(request.query, {"tag", "confirm"});
-  ListQuery query;
+  ListQuery query = what_may_be_seen(request);
   query.tag = tag_of(request);
   if (!query.tag) throw bad_parameter("tag", "`tag` must say which solves: DELETE /v1/solves?tag=NAME.");
-  if (!request.identity.sees_all()) query.owner = request.identity.name;
   constexpr long any_number = std::numeric_limits<int>::max();
   const auto confirmed = integer_parameter(request.query, "confirm", 0, any_number);
   const std::vector<std::string> ids = service.store.ids(query);

@@ -344,8 +344,8 @@ class Listener::Impl {
                               [this, exchange, response, first] { carry_parts(exchange, response, first); }));
   }
 
-  /// Those that there are by now. The next ones are waited for without a thread, and without a place in the
-  /// pending connections.
+  /// Those that there are by now. The next ones are waited for without a thread, and without a place among
+  /// the pending connections.
   void carry_parts(const std::shared_ptr<Exchange>& exchange, const std::shared_ptr<const Response>& response,
                    bool first) {
     const std::shared_ptr<Connection>& connection = exchange->connection;

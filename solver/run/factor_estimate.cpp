@@ -119,8 +119,8 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
   sum.unknowns.assign(9 * triangles.size(), nowhere);
   sum.matrix_of.resize(triangles.size());
   const auto place = [&](int triangle, int kind) {
-    return std::find(sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind,
-                     sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind + 2, nowhere);
+    const auto first = sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind;
+    return std::find(first, first + 2, nowhere);
   };
   std::vector<int> traces, contact;
   EdgeTable(triangles).for_each_edge([&](const auto& sides) {
