@@ -48,6 +48,10 @@ export function table(caption, names, rows) {
 }
 
 export const state = (status) => element("span", { className: `state ${status}` }, status);
+export const isOpen = ({ status }) => status === "queued" || status === "running";
+
+/// Each leads to the solves that have it.
+export const tagLinks = (tags) => tags.map((tag) => element("a", { href: `/v1/solves?${new URLSearchParams({ tag })}` }, tag));
 
 /// A download of bytes that the page has made.
 export function save(name, blob) {

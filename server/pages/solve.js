@@ -2,7 +2,7 @@
 
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
-import { bytes, element, seconds, short, state } from "/pages/element.js";
+import { bytes, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
 import { Figure } from "/pages/figure.js";
 import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
@@ -17,7 +17,6 @@ const head = element("div", { className: "head" }), picture = element("div", { c
 const history = new History();
 main.append(head, picture, history.whole, sections);
 
-const ended = ({ status }) => !["queued", "running"].includes(status);
 const failed = (error) => picture.replaceChildren(element("p", { className: "notice bad", role: "alert" }, error.message));
 
 // --- the head
@@ -25,12 +24,12 @@ const failed = (error) => picture.replaceChildren(element("p", { className: "not
 function showHead(solve) {
   document.title = `${solve.title || "A solve"} · Signorini`;
   const { summary, error, progress, links } = solve;
-  const button = element("button", { type: "button" }, ended(solve) ? "Delete" : "Cancel");
+  const button = element("button", { type: "button" }, isOpen(solve) ? "Cancel" : "Delete");
   button.addEventListener("click", async () => {
     button.disabled = true;
     try {
       await ask(links.self, { method: "DELETE" });
-      if (ended(solve)) location.assign("/v1/solves");
+      if (!isOpen(solve)) location.assign("/v1/solves");
     } catch (refusal) {
       failed(refusal);
     }
@@ -39,7 +38,7 @@ function showHead(solve) {
     : [progress.phase, progress.level && `level ${progress.level.number}`, progress.iteration > 0 && `iteration ${short(progress.iteration)}`, progress.residual > 0 && `residual ${short(progress.residual, 3)}`].filter(Boolean);
   const files = summary ? [["result", "JSON"], ["vtu", "VTU"], ["picture", "Plain picture"], ["contact_csv", "Contact CSV"], ["history_csv", "History CSV"]].map(([key, name]) => fileLink(links[key], name)) : [];
   head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
-    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · ")), solve.tags.length ? element("span", { className: "tags" }, solve.tags.map((tag) => element("a", { href: `/v1/solves?${new URLSearchParams({ tag })}` }, tag))) : ""),
+    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · ")), solve.tags.length ? element("span", { className: "tags" }, tagLinks(solve.tags)) : ""),
     error ? element("p", { className: "notice bad" }, element("strong", {}, `${error.title}. `), error.detail ?? "", (error.errors ?? []).map((each) => element("span", { className: "line" }, element("code", {}, each.pointer ?? ""), ` ${each.detail}`))) : "",
     element("div", { className: "row" }, button, files));
 }
@@ -50,9 +49,7 @@ function fileLink(href, name) {
   link.addEventListener("click", async (event) => {
     if (!sessionStorage.getItem("token")) return;
     event.preventDefault();
-    const url = URL.createObjectURL(await (await ask(href)).blob());
-    element("a", { href: url, download: href.split("/").slice(-2).join("-") }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
+    save(href.split("/").slice(-2).join("-"), await (await ask(href)).blob());
   });
   return link;
 }
@@ -121,7 +118,7 @@ let current = null, waiting = false;
 function showHeadSoon() {
   if (waiting) return;
   waiting = true;
-  setTimeout(() => { waiting = false; if (!ended(current)) showHead(current); }, 100);
+  setTimeout(() => { waiting = false; if (isOpen(current)) showHead(current); }, 100);
 }
 
 async function showEnd(solve) {
@@ -140,8 +137,8 @@ async function showEnd(solve) {
 try {
   current = await getJson(path);
   showHead(current);
-  if (!ended(current)) picture.replaceChildren(element("p", { className: "quiet" }, "The picture comes when it is solved."));
-  await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = "The service cannot be reached; trying again."; else if (!ended(current)) history.end.textContent = ""; });
+  if (isOpen(current)) picture.replaceChildren(element("p", { className: "quiet" }, "The picture comes when it is solved."));
+  await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = "The service cannot be reached; trying again."; else if (isOpen(current)) history.end.textContent = ""; });
 } catch (error) {
   if (!current) head.replaceChildren(element("h1", {}, "A solve"));
   failed(error);

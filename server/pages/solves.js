@@ -1,11 +1,10 @@
 // The solves: what waits, runs and has ended, as it happens.
 
-import { aria, element, percent, short, state } from "/pages/element.js";
+import { aria, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
 import { ask, getJson } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
 const pause = 1000; // ms between two looks
-const isOpen = ({ status }) => status === "queued" || status === "running";
 
 const main = shell();
 const rows = new Map(); // id → { row, solve, box, cells }
@@ -64,7 +63,7 @@ function show(solve) {
   own.solve = solve;
   const name = solve.title || "without a title";
   own.link.textContent = name;
-  if (own.tags.children.length !== solve.tags.length) own.tags.replaceChildren(...solve.tags.map((each) => element("a", { href: `/v1/solves?${new URLSearchParams({ tag: each })}` }, each)));
+  if (own.tags.children.length !== solve.tags.length) own.tags.replaceChildren(...tagLinks(solve.tags));
   aria(own.box, { "aria-label": `Choose ${name}` });
   own.cells[1].replaceChildren(state(solve.status));
   own.cells[2].textContent = progressOf(solve);
