@@ -1,5 +1,6 @@
 // A service and a browser that look at each other, for a test.
 
+import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createRequire } from "node:module";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -59,7 +60,7 @@ export class Service {
   }
 }
 
-export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 
 /// A page that fails the test by whatever goes wrong in it: errors, and whatever the policy of the service forbids.
 export async function newPage(browser, { width = 1280, height = 900, theme = "light", ...more } = {}) {
@@ -72,6 +73,19 @@ export async function newPage(browser, { width = 1280, height = 900, theme = "li
   page.on("console", (message) => { if (message.type() === "error" && !/net::ERR|status of (4|5)\d\d/.test(message.text())) page.faults.push(message.text()); });
   page.on("request", (request) => { if (!/^(http:\/\/127\.0\.0\.1|blob:|data:)/.test(request.url())) page.foreign.push(request.url()); });
   return page;
+}
+
+/// Nothing went wrong in the page, and nobody else was asked.
+export function expectWell(page) {
+  assert.deepEqual(page.faults, []);
+  assert.deepEqual(page.foreign, []);
+}
+
+/// A service and a browser, and their end.
+export const begin = (...flags) => Promise.all([Service.start(...flags), launch()]);
+export async function end(service, browser) {
+  await browser.close();
+  await service.end();
 }
 
 /// The pixels of a canvas, read from a screenshot of it by the browser itself.

@@ -2,16 +2,11 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { drawn, launch, newPage, Service } from "./browser.js";
+import { begin, drawn, end, newPage } from "./browser.js";
 
 let service, browser;
-before(async () => {
-  [service, browser] = await Promise.all([Service.start(), launch()]);
-});
-after(async () => {
-  await browser.close();
-  await service.end();
-});
+before(async () => { [service, browser] = await begin(); });
+after(() => end(service, browser));
 
 /// A page that shows a membrane of so many triangles, twice the square of the divisions.
 async function shown(divisions) {

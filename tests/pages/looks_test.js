@@ -2,19 +2,16 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { drawn, launch, newPage, Service, violations } from "./browser.js";
+import { begin, drawn, end, newPage, violations } from "./browser.js";
 
 let service, browser;
 const paths = { start: "/", solves: "/v1/solves", docs: "/docs", example: "/v1/examples/elastic-block" };
 before(async () => {
-  [service, browser] = await Promise.all([Service.start(), launch()]);
+  [service, browser] = await begin();
   const solves = await Promise.all(["elastic-block", "paper-nonconforming"].map(async (name) => service.solve(await service.example(name))));
   Object.assign(paths, { body: `/v1/solves/${solves[0]}`, membrane: `/v1/solves/${solves[1]}`, both: `/v1/solves/${solves[0]}#with=${solves[0]}` });
 });
-after(async () => {
-  await browser.close();
-  await service.end();
-});
+after(() => end(service, browser));
 
 const arrived = { start: ".example", solves: "tbody tr", docs: "section h3", example: ".text" };
 

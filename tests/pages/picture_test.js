@@ -3,13 +3,13 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
-import { drawn, launch, newPage, pixelsOf, Service } from "./browser.js";
+import { begin, drawn, end, expectWell, newPage, pixelsOf } from "./browser.js";
 import { colour, scaleOf } from "./colours.js";
 
 let service, browser, page;
 const solves = {};
 before(async () => {
-  [service, browser] = await Promise.all([Service.start(), launch()]);
+  [service, browser] = await begin();
   page = await newPage(browser, { width: 640, height: 760, acceptDownloads: true });
   const membrane = { ...(await service.example("paper-nonconforming")), mesh: { divisions: [4, 4], pattern: "right" } };
   solves.constant = await service.solve(membrane);
@@ -17,14 +17,8 @@ before(async () => {
   solves.body = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" } });
   solves.other = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" }, material: { young: 100, poisson: 0.3, plane: "strain" } });
 });
-after(async () => {
-  await browser.close();
-  await service.end();
-});
-const wellDone = () => {
-  assert.deepEqual(page.faults, []);
-  assert.deepEqual(page.foreign, []);
-};
+after(() => end(service, browser));
+const wellDone = () => expectWell(page);
 
 const open = async (id, hash = "") => {
   await page.goto("about:blank");

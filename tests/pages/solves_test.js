@@ -2,23 +2,17 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { drawn, launch, newPage, Service } from "./browser.js";
+import { begin, drawn, end, expectWell, newPage, Service } from "./browser.js";
 
 const html = '<img src=x onerror="window.hurt=1"><script>window.hurt=1</script>&amp;"';
 const token = "0123456789abcdef0123456789abcdef";
 let service, browser, page;
 before(async () => {
-  [service, browser] = await Promise.all([Service.start("--workers", "1"), launch()]);
+  [service, browser] = await begin("--workers", "1");
   page = await newPage(browser);
 });
-after(async () => {
-  await browser.close();
-  await service.end();
-});
-const wellDone = () => {
-  assert.deepEqual(page.faults, []);
-  assert.deepEqual(page.foreign, []);
-};
+after(() => end(service, browser));
+const wellDone = () => expectWell(page);
 const row = (title) => page.getByRole("row").filter({ hasText: title });
 const small = { model: "membrane", domain: { type: "rectangle", size: [1, 1] }, mesh: { divisions: [4, 4] }, material: { stiffness: 1 }, load: { body: -1 }, boundary: { left: { type: "fixed" }, bottom: { type: "contact" } }, scheme: "nonconforming" };
 /// Runs until it is cancelled.

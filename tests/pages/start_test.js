@@ -2,22 +2,16 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { launch, newPage, Service } from "./browser.js";
+import { begin, end, expectWell, newPage } from "./browser.js";
 
 let service, browser, page;
 before(async () => {
-  [service, browser] = await Promise.all([Service.start(), launch()]);
+  [service, browser] = await begin();
   page = await newPage(browser);
 });
-after(async () => {
-  await browser.close();
-  await service.end();
-});
+after(() => end(service, browser));
 
-const wellDone = () => {
-  assert.deepEqual(page.faults, []);
-  assert.deepEqual(page.foreign, []);
-};
+const wellDone = () => expectWell(page);
 const area = () => page.getByLabel("Problem, as JSON");
 const write = async (text) => {
   await area().fill("");
