@@ -16,6 +16,7 @@
 #include "fem/cubature.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
+#include "no_pressure.hpp"
 #include "problems/elasticity.hpp"
 
 namespace signorini::carried_loads_test {
@@ -57,10 +58,7 @@ class Square {
     problem_.boundary = boundary;
     discretization_.emplace(problem_, mesh_);
     laws_.emplace(problem_.material, mesh_, 1e-6, progress_);
-    pressure.emplace(
-        *discretization_,
-        Eigen::MatrixXd::Zero(discretization_->spaces().stresses(), discretization_->triangles()),
-        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(discretization_->clearance.rows.size())));
+    pressure.emplace(no_pressure(*discretization_));
   }
 
   CarriedLoads carry(const std::vector<double>& forces) const {
@@ -201,11 +199,8 @@ TEST(CarriedLoads, CountTheMomentsOfATractionOfAMembrane) {
       square += 21 * force * force;
       forces += force;
     }
-  const Eigen::MatrixXd no_stress =
-      Eigen::MatrixXd::Zero(discretization.spaces().stresses(), discretization.triangles());
-  const ContactPressure no_pressure(discretization, no_stress, Eigen::VectorXd());
   const double of_shape = std::sqrt(2.);  // |J| / √det J of the two triangles, at least
-  const CarriedLoads carried = carry_uncertain_loads(discretization, laws, no_pressure);
+  const CarriedLoads carried = carry_uncertain_loads(discretization, laws, no_pressure(discretization));
   EXPECT_GE(carried.norm, norm_of_element(1) * of_shape * std::sqrt(square));
   double on_edges = 0;
   for (const auto& own : carried.loads.on_edges) on_edges += own[0] + own[1] + own[2];
@@ -222,11 +217,8 @@ TEST(LoadsBroughtBack, HaveTheForceOfAllParts) {
   Observer observer;
   Progress progress(observer, std::nullopt);
   const LawOnMesh laws(problem.material, mesh, 1e-6, progress);
-  const ContactPressure no_pressure(
-      parts, Eigen::MatrixXd::Zero(parts.spaces().stresses(), parts.triangles()),
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts.clearance.rows.size())));
   const std::vector<int> parents{0, 0, 0, 0, 1, 1, 1, 1};
-  const LoadsBroughtBack back = bring_back(parts, laws, no_pressure, parents, 2);
+  const LoadsBroughtBack back = bring_back(parts, laws, no_pressure(parts), parents, 2);
   std::vector<double> forces(2);
   double of_loads = 0;
   for (int t = 0; t < parts.triangles(); ++t) {

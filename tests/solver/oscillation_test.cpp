@@ -7,6 +7,7 @@
 #include "certify/data/linear_remainder.hpp"
 #include "fem/triangle_pieces.hpp"
 #include "mesh/rectangle.hpp"
+#include "no_pressure.hpp"
 #include "problems/elasticity.hpp"
 
 namespace signorini::oscillation_test {
@@ -44,9 +45,7 @@ void expect_oscillation(const Material& material, double softest) {
   Observer observer;
   Progress progress(observer, std::nullopt);
   const LawOnMesh laws(problem.material, mesh, 1e-8, progress);
-  ContactPressure pressure(
-      discretization, Eigen::MatrixXd::Zero(discretization.spaces().stresses(), discretization.triangles()),
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(discretization.clearance.rows.size())));
+  ContactPressure pressure = no_pressure(discretization);
   const int pressed = discretization.clearance.edges[0].edge;
   pressure.steep[pressed] = {{pressed, {0, 0}}, kSteep};
   int loaded = 0;

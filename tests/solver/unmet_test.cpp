@@ -5,6 +5,7 @@
 #include "certify/certificate.hpp"
 #include "certify/data/carried_loads.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
+#include "no_pressure.hpp"
 #include "problems/elasticity.hpp"
 #include "solved_problem.hpp"
 
@@ -120,9 +121,7 @@ TEST(Unmet, IsABodyThatTouchesItselfInAPoint) {
   const Mesh mesh = make_mesh({Point(0, 0), Point(1, 0), Point(0, 1), Point(-1, 0), Point(0, -1)},
                               {{0, 1, 2}, {0, 3, 4}}, {"ground"}, {{{0, 1}, 0}, {{0, 3}, 0}});
   const Discretization discretization(problem, mesh);
-  const Eigen::MatrixXd no_stress =
-      Eigen::MatrixXd::Zero(discretization.spaces().stresses(), discretization.triangles());
-  const EdgeTractions tractions(discretization, no_stress, {discretization, no_stress, Eigen::VectorXd()});
+  const EdgeTractions tractions(discretization, no_stress(discretization), no_pressure(discretization));
   ASSERT_EQ(tractions.unmet().size(), 1u);
   EXPECT_NE(tractions.unmet()[0].find("the body touches itself in the point"), std::string::npos);
 }
