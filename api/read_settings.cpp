@@ -45,7 +45,7 @@ Method read_paper_form(const Object& object, double rho, double augmentation) {
 }
 
 Method read_accelerated_form(const Object& object) {
-  AcceleratedUzawa uzawa;
+  Mprgp uzawa;
   if (const auto initial = object.find("initial_displacement"))
     initial->fault("belongs to the paper's form; give numbers for rho and augmentation, or leave it out");
   uzawa.tolerance = read_tolerance(object, true).value_or(uzawa.tolerance);

@@ -8,11 +8,11 @@
 #include "certify/data/carried_loads.hpp"
 #include "certify/data/lost_digits.hpp"
 #include "certify/displacement/relaxation.hpp"
-#include "certify/elasticity/least_airy.hpp"
+#include "certify/elasticity/airy_minimization.hpp"
 #include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/energy_norm.hpp"
 #include "certify/gap_estimate.hpp"
-#include "certify/membrane/least_potential.hpp"
+#include "certify/membrane/stream_function_minimization.hpp"
 #include "certify/patches/patch_pairs.hpp"
 #include "certify/totals.hpp"
 
@@ -33,27 +33,27 @@ constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
 /// patch that cannot be solved, because nothing holds it, leaves the pair as it is. A mesh that refines
 /// itself is fine in these places already: there the bound would fall by an eighth, for more than its solves
 /// take. Answers what is not known of the loads on the patches.
-LoadsBroughtBack add_patches(const Discretization& problem, const Solution& solution,
+LoadsBroughtBack add_patches(const Discretization& discrete, const Solution& solution,
                              const AdmissiblePair& pair, double tolerance, Owners& owners, Totals& totals,
                              Progress& progress) {
-  LoadsBroughtBack back{0, std::vector<double>(problem.triangles())};
-  const bool is_admissible = problem.spaces().order == 0 || pair.pressure.potential_at_points.empty();
-  if (is_admissible || problem.problem.mesh.adaptive) return back;
+  LoadsBroughtBack back{0, std::vector<double>(discrete.triangles())};
+  const bool is_admissible = discrete.spaces().order == 0 || pair.pressure.stream_function_at_points.empty();
+  if (is_admissible || discrete.problem.mesh.adaptive) return back;
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
-  for (Patch& patch : patches_where_pressure_changes(problem, pair.pressure)) {
+  for (Patch& patch : patches_where_pressure_changes(discrete, pair.pressure)) {
     try {
-      const PatchPairs pairs(problem, solution.stress, pair, std::move(patch), within);
+      const PatchPairs pairs(discrete, solution.stress, pair, std::move(patch), within);
       const std::vector<int>& parents = pairs.patch().parents;
-      const LawOnMesh laws(problem.problem.material, *pairs.patch().mesh, tolerance, within);
+      const LawOnMesh laws(discrete.problem.material, *pairs.patch().mesh, tolerance, within);
       if (!pairs.are_admissible() || !laws.unmet().empty()) continue;
       const LoadsBroughtBack own =
-          bring_back(pairs.problem(), laws, pairs.first().pressure, parents, problem.triangles());
+          bring_back(pairs.problem(), laws, pairs.first().pressure, parents, discrete.triangles());
       totals.add<1>(pairs.problem(), laws, pairs.first(), MembraneSums(pairs), parents, within,
                     &pairs.second());
       for (const int t : parents) owners[t] = -1;
       back.square += own.square;
-      for (int t = 0; t < problem.triangles(); ++t) back.forces[t] += own.forces[t];
+      for (int t = 0; t < discrete.triangles(); ++t) back.forces[t] += own.forces[t];
     } catch (const std::runtime_error&) {
       continue;
     }
@@ -61,12 +61,12 @@ LoadsBroughtBack add_patches(const Discretization& problem, const Solution& solu
   return back;
 }
 
-std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretization& problem,
+std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretization& discrete,
                                          const ContactPressure& pressure) {
   std::vector<EdgePressure> all;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
-    const EdgePressure own = pressure.on(problem, static_cast<int>(i));
-    const bool is_owned = owners[problem.mesh.edge_triangles[own.edge][0]] >= 0;
+    const EdgePressure own = pressure.on(discrete, static_cast<int>(i));
+    const bool is_owned = owners[discrete.mesh.edge_triangles[own.edge][0]] >= 0;
     if (is_owned && (own.at_ends[0] != 0 || own.at_ends[1] != 0)) all.push_back(own);
   }
   return all;
@@ -93,11 +93,11 @@ Certificate without_bound(const std::vector<Fault>& faults) {
   return certificate;
 }
 
-Certificate certify_sound_data(const Discretization& problem, const Solution& solution,
+Certificate certify_sound_data(const Discretization& discrete, const Solution& solution,
                                const Eigen::VectorXd& coupling, Progress& progress) {
   const Eigen::VectorXd clearance =
-      problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()));
-  AdmissiblePair pair{{problem, solution, coupling, progress}, {problem, solution.stress, clearance}};
+      discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()));
+  AdmissiblePair pair{{discrete, solution, coupling, progress}, {discrete, solution.stress, clearance}};
   Certificate certificate;
   std::vector<std::string> unmet = pair.v.unmet();
   // Rounding leaves less, but where 1 − 2ν or the inverse of a contrast is no more than that.
@@ -107,32 +107,32 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
         "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly "
         "incompressible "
         "or of so different stiffnesses: take Poisson's ratio further from 1/2, or a smaller contrast");
-  const double tolerance = kOfGap * std::min(1., estimate_gap(problem, solution.stress, pair.v, progress));
-  const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
-  for (const auto& reasons : {problem.body.unmet(), problem.traction.unmet(), laws.unmet(),
-                              lost_digits(problem, solution.displacement.cwiseAbs().maxCoeff(), progress)})
+  const double tolerance = kOfGap * std::min(1., estimate_gap(discrete, solution.stress, pair.v, progress));
+  const LawOnMesh laws(discrete.problem.material, discrete.mesh, tolerance, progress);
+  for (const auto& reasons : {discrete.body.unmet(), discrete.traction.unmet(), laws.unmet(),
+                              lost_digits(discrete, solution.displacement.cwiseAbs().maxCoeff(), progress)})
     add(unmet, reasons);
-  Totals totals(problem.triangles());
-  Owners owners(problem.triangles());
+  Totals totals(discrete.triangles());
+  Owners owners(discrete.triangles());
   std::iota(owners.begin(), owners.end(), 0);
   LoadsBroughtBack of_patches;
-  if (problem.spaces().components == 1) {
-    pair.v.relax(work_of_loads(problem), kStepsFromAverage, progress);
-    minimize_potential(problem, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = potential_of_balance(problem, progress);
-    of_patches = add_patches(problem, solution, pair, tolerance, owners, totals, progress);
-    totals.add<1>(problem, laws, pair, MembraneSums(problem, solution.stress, pair), owners, progress);
+  if (discrete.spaces().components == 1) {
+    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
+    minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
+    pair.of_balance = stream_function_of_balance(discrete, progress);
+    of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);
+    totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair), owners, progress);
   } else {
     pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
-    if (problem.spaces().order == 1)
-      minimize_airy(problem, solution.stress, pair.v, clearance, pair.pressure, progress);
-    EdgeTractions tractions(problem, solution.stress, pair.pressure);
-    relax_tractions(problem, solution.stress, tractions, kSweepsOfTractions, progress);
+    if (discrete.spaces().order == 1)
+      minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
+    EdgeTractions tractions(discrete, solution.stress, pair.pressure);
+    relax_tractions(discrete, solution.stress, tractions, kSweepsOfTractions, progress);
     add(unmet, tractions.unmet());
     progress.check();
-    totals.add<2>(problem, laws, pair, ElasticSums(problem, solution, pair.v, tractions), owners, progress);
+    totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, tractions), owners, progress);
   }
-  const CarriedLoads carried = carry_uncertain_loads(problem, laws, pair.pressure, of_patches.forces);
+  const CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches.forces);
   totals.contact *= 1 + carried.change_of_pressure;
   totals.second_counts = carried.change_of_pressure == 0;
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
@@ -140,11 +140,11 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
   totals.carried =
       is_little || !carried.is_held
           ? carried.norm
-          : std::min(carried.norm, carried_by_motions(problem, laws, carried.loads, carried.root, progress));
+          : std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
   totals.carried += std::sqrt(of_patches.square);
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);
-  certificate.pressure = pressure_where(owners, problem, pair.pressure);
+  certificate.pressure = pressure_where(owners, discrete, pair.pressure);
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
   return certificate;
@@ -152,23 +152,23 @@ Certificate certify_sound_data(const Discretization& problem, const Solution& so
 
 }  // namespace
 
-Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
+Certificate certify(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& coupling,
                     Progress& progress) {
   try {
-    return certify_sound_data(problem, solution, coupling, progress);
+    return certify_sound_data(discrete, solution, coupling, progress);
   } catch (const InvalidProblem& unsound) {
     return without_bound(unsound.faults());
   }
 }
 
-void move_to(const Eigen::MatrixXd& stress, const Discretization& problem, const Solution& solution,
+void move_to(const Eigen::MatrixXd& stress, const Discretization& discrete, const Solution& solution,
              Certificate& certificate, Progress& progress) {
   if (!certificate.has_bound()) return;
   constexpr double tolerance = 1e-4;
-  const LawOnMesh laws(problem.problem.material, problem.mesh, tolerance, progress);
-  const Eigen::VectorXd way = energy_norm_squares(problem, stress - solution.stress, laws, progress);
+  const LawOnMesh laws(discrete.problem.material, discrete.mesh, tolerance, progress);
+  const Eigen::VectorXd way = energy_norm_squares(discrete, stress - solution.stress, laws, progress);
   const double distance = std::sqrt(way.sum()),
-               size = std::sqrt(energy_norm_squares(problem, stress, laws, progress).sum());
+               size = std::sqrt(energy_norm_squares(discrete, stress, laws, progress).sum());
   ErrorBound& bound = certificate.bound;
   bound.value += distance;
   bound.parts.equilibration += distance;

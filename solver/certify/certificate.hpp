@@ -24,12 +24,12 @@ struct Certificate {
 /// turn out to be unsound in a point that the discrete problem does not ask leave it without a bound.
 ///
 /// `coupling`: the unknowns of the trace space.
-Certificate certify(const Discretization& problem, const Solution& solution, const Eigen::VectorXd& coupling,
+Certificate certify(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& coupling,
                     Progress& progress);
 
 /// Makes the bound of a solution one of another stress τ of the same spaces, such as an iterate:
 /// ‖σ − τ‖_C ≤ ‖σ − σ_h‖_C + ‖σ_h − τ‖_C. The energies stay, those of the pair (σ*, v).
-void move_to(const Eigen::MatrixXd& stress, const Discretization& problem, const Solution& solution,
+void move_to(const Eigen::MatrixXd& stress, const Discretization& discrete, const Solution& solution,
              Certificate& certificate, Progress& progress);
 
 }  // namespace signorini

@@ -16,14 +16,14 @@ Tensor<D> symmetric(Tensor<D> tensor) {
 }
 
 template <int D>
-double estimate(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissibleDisplacement& v,
-                Progress& progress) {
-  LawField<D> law(problem.problem.material);
-  const StressValues<D> values(problem.spaces(), kPoints);
+double estimate(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                const AdmissibleDisplacement& v, Progress& progress) {
+  LawField<D> law(discrete.problem.material);
+  const StressValues<D> values(discrete.spaces(), kPoints);
   double gap = 0, size = 0;
-  for (int t = 0; t < problem.triangles(); ++t) {
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    const AffineMap map(problem.mesh.corners(t));
+    const AffineMap map(discrete.mesh.corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
     const Quadratic<D> own = v.on<D>(t);
     for (std::size_t q = 0; q < kPoints.size(); ++q) {
@@ -41,10 +41,10 @@ double estimate(const Discretization& problem, const Eigen::MatrixXd& stress, co
 
 }  // namespace
 
-double estimate_gap(const Discretization& problem, const Eigen::MatrixXd& stress,
+double estimate_gap(const Discretization& discrete, const Eigen::MatrixXd& stress,
                     const AdmissibleDisplacement& v, Progress& progress) {
-  return problem.spaces().components == 1 ? estimate<1>(problem, stress, v, progress)
-                                          : estimate<2>(problem, stress, v, progress);
+  return discrete.spaces().components == 1 ? estimate<1>(discrete, stress, v, progress)
+                                           : estimate<2>(discrete, stress, v, progress);
 }
 
 }  // namespace signorini

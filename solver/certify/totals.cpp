@@ -21,21 +21,21 @@ constexpr int kCellsOfContact = 20'000, kCellsOfJumps = 20'000;
 /// AdmissibleDisplacement has refused.
 class ContactTerms {
  public:
-  ContactTerms(const Discretization& problem, const AdmissibleDisplacement& v, int i, CellBudget& budget)
-      : problem_(problem),
+  ContactTerms(const Discretization& discrete, const AdmissibleDisplacement& v, int i, CellBudget& budget)
+      : discrete_(discrete),
         edge_(i),
-        contact_(problem.clearance.edges[i]),
-        length_(problem.mesh.length(contact_.edge)) {
+        contact_(discrete.clearance.edges[i]),
+        length_(discrete.mesh.length(contact_.edge)) {
     const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
                         std::abs(v.along_contact(contact_, 1));
-    pieces_ = pieces_on_edge(gap_on(problem, contact_), EdgeLine(problem.mesh, contact_.edge),
+    pieces_ = pieces_on_edge(gap_on(discrete, contact_), EdgeLine(discrete.mesh, contact_.edge),
                              kMeanTolerance * size, budget);
     const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
     if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
   }
 
   double operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
-    const EdgePressure own = pressure.on(problem_, edge_);
+    const EdgePressure own = pressure.on(discrete_, edge_);
     double sum = 0;
     for (const EdgePiece& piece : pieces_) {
       const double begin = std::max(piece.begin, own.begin), length = std::min(piece.end, own.end) - begin;
@@ -49,7 +49,7 @@ class ContactTerms {
   }
 
  private:
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const int edge_;
   const ContactEdge& contact_;
   const double length_;
@@ -63,20 +63,20 @@ bool is_zero(const ContactPressure& pressure, int i) {
 }  // namespace
 
 template <int D, typename Sums>
-void Totals::add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
+void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
                  const Owners& owners, Progress& progress, const AdmissiblePair* second) {
-  LawField<D> law(problem.problem.material);
+  LawField<D> law(discrete.problem.material);
   CellBudget of_jumps{kCellsOfJumps, &progress};
   int jumps = 0;
-  for (int t = 0; t < problem.triangles(); ++t) jumps += owners[t] >= 0 && problem.body[t].jumps;
-  for (int t = 0; t < problem.triangles(); ++t) {
+  for (int t = 0; t < discrete.triangles(); ++t) jumps += owners[t] >= 0 && discrete.body[t].jumps;
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
     double o = 0;
     of_jumps.share(std::max(1, jumps),
-                   [&](CellBudget& budget) { o = oscillation<D>(problem, t, pair.pressure, laws, budget); });
-    jumps -= problem.body[t].jumps;
+                   [&](CellBudget& budget) { o = oscillation<D>(discrete, t, pair.pressure, laws, budget); });
+    jumps -= discrete.body[t].jumps;
     all += own;
     all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;
@@ -87,36 +87,36 @@ void Totals::add(const Discretization& problem, const LawOnMesh& laws, const Adm
     shares[owners[t]] += of_gap + of_correction + own.skew;
   }
   CellBudget budget{kCellsOfContact, &progress};
-  const int edges = static_cast<int>(problem.clearance.edges.size());
+  const int edges = static_cast<int>(discrete.clearance.edges.size());
   for (int i = 0; i < edges; ++i) {
-    const int owner = owners[problem.mesh.edge_triangles[problem.clearance.edges[i].edge][0]];
+    const int owner = owners[discrete.mesh.edge_triangles[discrete.clearance.edges[i].edge][0]];
     if (owner < 0) continue;
     if (is_zero(pair.pressure, i) && (!second || is_zero(second->pressure, i))) continue;
     std::optional<ContactTerms> of_edge;
-    budget.share(edges - i, [&](CellBudget& part) { of_edge.emplace(problem, pair.v, i, part); });
+    budget.share(edges - i, [&](CellBudget& part) { of_edge.emplace(discrete, pair.v, i, part); });
     const ContactTerms& terms = *of_edge;
     const double own = terms(pair.pressure, pair.v);
     contact += own;
     shares[owner] += own;
     if (second) all.known += terms(pair.pressure, second->v) + terms(second->pressure, pair.v) - 2 * own;
   }
-  add_work_of_traction<D>(problem, pair.v, owners);
+  add_work_of_traction<D>(discrete, pair.v, owners);
 }
 
 /// ∫ t·v over Γ_F where the triangles have owners: t − Πt is orthogonal to v there, as far as it is known.
 template <int D>
-void Totals::add_work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v,
+void Totals::add_work_of_traction(const Discretization& discrete, const AdmissibleDisplacement& v,
                                   const Owners& owners) {
-  for (int edge = 0; edge < static_cast<int>(problem.mesh.edges.size()); ++edge) {
-    const int t = problem.mesh.edge_triangles[edge][0];
-    if (!problem.traction.acts_on(edge) || owners[t] < 0) continue;
-    all.energy_slack += problem.traction[edge].uncertain_work * v.largest_on(t);
+  for (int edge = 0; edge < static_cast<int>(discrete.mesh.edges.size()); ++edge) {
+    const int t = discrete.mesh.edge_triangles[edge][0];
+    if (!discrete.traction.acts_on(edge) || owners[t] < 0) continue;
+    all.energy_slack += discrete.traction[edge].uncertain_work * v.largest_on(t);
     for (int q = 0; q < EdgeRule::size; ++q) {
       const double s = edge_rule().points[q];
       const Eigen::VectorXd value = v.on_edge(edge, s);
       for (int c = 0; c < D; ++c) {
         const double own =
-            edge_rule().weights[q] * problem.mesh.length(edge) * problem.traction(edge, c, s) * value[c];
+            edge_rule().weights[q] * discrete.mesh.length(edge) * discrete.traction(edge, c, s) * value[c];
         all.energy -= own;
         work += std::abs(own);
       }

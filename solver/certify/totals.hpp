@@ -14,7 +14,7 @@ struct Totals {
   /// Adds the triangles that have owners. `sums` are those of the pair, and of the second one if there is
   /// one: MembraneSums or ElasticSums.
   template <int D, typename Sums>
-  void add(const Discretization& problem, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
+  void add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
            const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr);
 
   TriangleSums all;
@@ -28,7 +28,7 @@ struct Totals {
 
  private:
   template <int D>
-  void add_work_of_traction(const Discretization& problem, const AdmissibleDisplacement& v,
+  void add_work_of_traction(const Discretization& discrete, const AdmissibleDisplacement& v,
                             const Owners& owners);
 };
 

@@ -3,7 +3,7 @@
 #include "certify/admissible_pair.hpp"
 #include "certify/data/law_pieces.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 #include "certify/patches/patch_pairs.hpp"
 #include "certify/tensor.hpp"
@@ -35,14 +35,14 @@ struct TriangleSums {
   void add_unknown_strain(double zeta);
 };
 
-/// Membrane: σ* is σ_h, the quadratic balance, and the curl of the potential of both it and the pressure; v
-/// is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
+/// Membrane: σ* is σ_h, the quadratic balance, and the curl of the stream function of both it and the
+/// pressure; v is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 ///
 /// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has
 /// beyond that counts twice, in the integral and in the rule, whose weights are positive.
 class MembraneSums {
  public:
-  MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
+  MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
   explicit MembraneSums(const PatchPairs& pairs);
 
   TriangleSums operator()(int t, LawField<1>& law, const LawOnMesh& laws) const;
@@ -65,7 +65,7 @@ class MembraneSums {
   const Rule& rule_for(int degree) const;
   void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Eigen::MatrixXd& stress_;
   const AdmissiblePair& pair_;
   const AdmissiblePair* second_ = nullptr;
@@ -79,40 +79,41 @@ class MembraneSums {
 /// follows that of the stress, because the mean over the edges of v_h balances the volume.
 class ElasticSums {
  public:
-  ElasticSums(const Discretization& problem, const Solution& solution, const AdmissibleDisplacement& v,
+  ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
   TriangleSums operator()(int t, LawField<2>& law, const LawOnMesh& laws);
 
  private:
-  using Given = MacroValues<1>::Given;
+  using Given = JohnsonMercierOperators<1>::Given;
 
   /// The sums of a shape as squares of norms, once it has come up so often that this pays: a structured mesh
   /// has a few shapes, another hardly the same twice.
   struct Shape {
     int seen = 0;
-    std::unique_ptr<const MacroNorms> norms;
+    std::unique_ptr<const JohnsonMercierNorms> norms;
   };
 
-  using Inner = Eigen::Matrix<double, 2 * MacroRule::kInner, 1>;
+  using Inner = Eigen::Matrix<double, 2 * JohnsonMercierRule::kInner, 1>;
 
   Given given_on(int t, const AffineMap& map) const;
-  const MacroNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
-  TriangleSums by_norms(const MacroNorms& norms, const Given& given, Inner& inner) const;
-  TriangleSums by_points(const AffineMap& map, const MacroRule& rule, Given given, double error_of_whole,
-                         LawField<2>& law, Inner& inner) const;
-  std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map, const MacroRule& rule) const;
-  void add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
+  const JohnsonMercierNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
+  TriangleSums by_norms(const JohnsonMercierNorms& norms, const Given& given, Inner& inner) const;
+  TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, Given given,
+                         double error_of_whole, LawField<2>& law, Inner& inner) const;
+  std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
+                                              const JohnsonMercierRule& rule) const;
+  void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                         const Inner& inner, TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Solution& solution_;
   const AdmissibleDisplacement& v_;
   const EdgeTractions& tractions_;
   const bool has_load_;
   PerShape<Shape> shapes_;
-  MacroRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
+  JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
 };
 
 }  // namespace signorini

@@ -2,16 +2,16 @@
 
 namespace signorini {
 
-Completed complete(const Discretization& problem, CondensedContact& condensed,
+Completed complete(const Discretization& discrete, CondensedContact& condensed,
                    const Eigen::VectorXd& clearance, const std::vector<int>& exactly_open,
                    Progress& progress) {
   const Eigen::VectorXd x = condensed.traces(clearance, progress);
-  Completed all{x, recover(problem, x, progress)};
+  Completed all{x, recover(discrete, x, progress)};
   // A stiff volume (ν → 1/2) costs the factorisation digits that iterative refinement brings back.
   constexpr int most_steps = 3;
-  for (int step = 0; step < most_steps && !all.fields.is_balanced(problem.traces); ++step) {
+  for (int step = 0; step < most_steps && !all.fields.is_balanced(discrete.traces); ++step) {
     const Eigen::VectorXd dx = condensed.correction(all.fields.imbalance, exactly_open, progress);
-    change(problem, dx, all.fields, progress);
+    change(discrete, dx, all.fields, progress);
     all.coupling += dx;
   }
   return all;

@@ -14,7 +14,7 @@ struct Completed {
 };
 
 /// `exactly_open`: the contact unknowns whose pressure is to vanish to rounding.
-Completed complete(const Discretization& problem, CondensedContact& condensed,
+Completed complete(const Discretization& discrete, CondensedContact& condensed,
                    const Eigen::VectorXd& clearance, const std::vector<int>& exactly_open,
                    Progress& progress);
 

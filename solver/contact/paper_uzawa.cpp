@@ -32,31 +32,31 @@ auto local(const Eigen::MatrixXd& columns, int triangle, int rows) {
 
 }  // namespace
 
-UzawaIteration::UzawaIteration(const Discretization& problem, const PaperUzawa& settings, Progress& progress)
-    : problem_(problem), settings_(settings) {
+UzawaIteration::UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Progress& progress)
+    : discrete_(discrete), settings_(settings) {
   eliminate(progress);
   start();
 }
 
 void UzawaIteration::eliminate(Progress& progress) {
-  const int triangles = problem_.triangles();
-  const int n = problem_.traces.dofs_per_triangle(), nv = problem_.spaces().displacements();
+  const int triangles = discrete_.triangles();
+  const int n = discrete_.traces.dofs_per_triangle(), nv = discrete_.spaces().displacements();
   coupling_.resize(n * nv, triangles);
   divergence_.resize(nv * nv, triangles);
   load_.resize(nv, triangles);
   stiffness_of_.assign(triangles, -1);
   ElementSum matrix;
-  matrix.size = problem_.traces.free_unknowns();
+  matrix.size = discrete_.traces.free_unknowns();
   matrix.per_element = n;
-  PerShape<Shape> shapes(problem_);
+  PerShape<Shape> shapes(discrete_);
   for (int t = 0; t < triangles; ++t) {
     progress.check_in(t);
     const Shape& shape = shapes(t, [&](const ElementMatrices& matrices) -> Shape {
-      const AugmentedElimination elimination(matrices, problem_.spaces(), settings_.augmentation);
+      const AugmentedElimination elimination(matrices, discrete_.spaces(), settings_.augmentation);
       return {elimination.stiffness(), elimination.coupling(), elimination.divergence(),
               matrices.displacement_mass.inverse()};
     });
-    load_.col(t).noalias() = shape.mass_inverse.lazyProduct(problem_.load.col(t));
+    load_.col(t).noalias() = shape.mass_inverse.lazyProduct(discrete_.load.col(t));
     coupling_.col(t) = shape.coupling.reshaped();
     divergence_.col(t) = shape.divergence.reshaped();
     if (add_free(matrix, t, shape.stiffness)) continue;
@@ -69,7 +69,7 @@ void UzawaIteration::eliminate(Progress& progress) {
 
 /// Adds the stiffness of a triangle between its free unknowns; true if all of them are.
 bool UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stiffness) const {
-  const TraceSpace& traces = problem_.traces;
+  const TraceSpace& traces = discrete_.traces;
   LocalMatrix turned = stiffness;
   if (traces.is_turned(t)) turned = traces.to_xy(t).transpose() * stiffness * traces.to_xy(t);
   bool all = true;
@@ -80,47 +80,47 @@ bool UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stif
   }
   matrix.matrix_of.push_back(t);
   matrix.matrices.insert(matrix.matrices.end(), turned.data(), turned.data() + turned.size());
-  matrix.centres.push_back(problem_.mesh.centroid(t));
+  matrix.centres.push_back(discrete_.mesh.centroid(t));
   return all;
 }
 
 void UzawaIteration::start() {
   displacement_ = Eigen::MatrixXd::Constant(load_.rows(), load_.cols(), settings_.initial_displacement);
-  clearance_.resize(problem_.clearance.unknowns);
-  weight_.resize(problem_.clearance.unknowns);
-  pressure_.resize(problem_.clearance.unknowns);
+  clearance_.resize(discrete_.clearance.unknowns);
+  weight_.resize(discrete_.clearance.unknowns);
+  pressure_.resize(discrete_.clearance.unknowns);
   const double u = settings_.initial_displacement;
-  for (const ContactEdge& contact : problem_.clearance.edges) {
-    const double normal_displacement = problem_.spaces().components == 1 ? -u : u * contact.direction.sum();
-    for (int j = 0; j <= problem_.spaces().order; ++j) {
-      const ClearanceRow& row = problem_.clearance.rows[contact.rows[j]];
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
+    const double normal_displacement = discrete_.spaces().components == 1 ? -u : u * contact.direction.sum();
+    for (int j = 0; j <= discrete_.spaces().order; ++j) {
+      const ClearanceRow& row = discrete_.clearance.rows[contact.rows[j]];
       if (row.unknown < 0) continue;
       clearance_[row.unknown] = std::max(0., row.gap - normal_displacement);
       weight_[row.unknown] = row.weight;
     }
   }
-  mass_inverse_ = problem_.spaces().displacement_mass.inverse();
-  determinant_.resize(problem_.triangles());
-  for (int t = 0; t < problem_.triangles(); ++t)
-    determinant_[t] = AffineMap(problem_.mesh.corners(t)).determinant;
-  x_ = Eigen::VectorXd::Zero(problem_.traces.unknowns());
+  mass_inverse_ = discrete_.spaces().displacement_mass.inverse();
+  determinant_.resize(discrete_.triangles());
+  for (int t = 0; t < discrete_.triangles(); ++t)
+    determinant_[t] = AffineMap(discrete_.mesh.corners(t)).determinant;
+  x_ = Eigen::VectorXd::Zero(discrete_.traces.unknowns());
   imbalance_.resizeLike(load_);
 }
 
 void UzawaIteration::solve_first_equation(Progress& progress) {
-  const int n = problem_.traces.dofs_per_triangle(), free = problem_.traces.free_unknowns();
-  right_ = problem_.coupling_load.head(free);
+  const int n = discrete_.traces.dofs_per_triangle(), free = discrete_.traces.free_unknowns();
+  right_ = discrete_.coupling_load.head(free);
   x_.head(free).setZero();
   x_.tail(clearance_.size()) = clearance_;
   augmented_ = displacement_ + settings_.augmentation * load_;
-  for (int t = 0; t < problem_.triangles(); ++t) {
+  for (int t = 0; t < discrete_.triangles(); ++t) {
     // t − E σ of the data alone: P (u + r Πf) − K_r m with the free traces at 0.
     LocalVector flux = local(coupling_, t, n).lazyProduct(augmented_.col(t));
-    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * problem_.traces.values(t, x_);
-    if (problem_.traces.is_turned(t)) flux = (problem_.traces.to_xy(t).transpose() * flux).eval();
+    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * discrete_.traces.values(t, x_);
+    if (discrete_.traces.is_turned(t)) flux = (discrete_.traces.to_xy(t).transpose() * flux).eval();
     for (int j = 0; j < n; ++j) {
-      const int dof = problem_.traces.dof(t, j);
-      if (problem_.traces.is_free(dof)) right_[problem_.traces[dof].unknown] += flux[j];
+      const int dof = discrete_.traces.dof(t, j);
+      if (discrete_.traces.is_free(dof)) right_[discrete_.traces[dof].unknown] += flux[j];
     }
   }
   factor_->solve(right_, workspace_, progress);
@@ -128,10 +128,10 @@ void UzawaIteration::solve_first_equation(Progress& progress) {
 }
 
 void UzawaIteration::update_displacement() {
-  const int n = problem_.traces.dofs_per_triangle();
+  const int n = discrete_.traces.dofs_per_triangle();
   last_displacement_ = displacement_;
-  for (int t = 0; t < problem_.triangles(); ++t) {
-    const LocalVector m = problem_.traces.values(t, x_);
+  for (int t = 0; t < discrete_.triangles(); ++t) {
+    const LocalVector m = discrete_.traces.values(t, x_);
     LocalVector divergence = local(coupling_, t, n).transpose().lazyProduct(m);
     divergence -= local(divergence_, t, static_cast<int>(divergence.size())).lazyProduct(augmented_.col(t));
     imbalance_.col(t) = mass_inverse_.lazyProduct(divergence) / determinant_[t] + load_.col(t);
@@ -142,14 +142,14 @@ void UzawaIteration::update_displacement() {
 /// −σ_n^m = <−σ_n^m, φ_i> / <1, φ_i> from the traces and displacements of σ^m.
 void UzawaIteration::update_pressure() {
   contact_forces(
-      problem_, [this](int t) { return flux_on_contact(t); }, forces_);
-  for (std::size_t i = 0; i < problem_.clearance.rows.size(); ++i)
-    if (const int unknown = problem_.clearance.rows[i].unknown; unknown >= 0)
+      discrete_, [this](int t) { return flux_on_contact(t); }, forces_);
+  for (std::size_t i = 0; i < discrete_.clearance.rows.size(); ++i)
+    if (const int unknown = discrete_.clearance.rows[i].unknown; unknown >= 0)
       pressure_[unknown] = forces_[static_cast<Eigen::Index>(i)] / weight_[unknown];
 }
 
 LocalVector UzawaIteration::flux_on_contact(int t) const {
-  LocalVector flux = stiffness_[stiffness_of_[t]].lazyProduct(problem_.traces.values(t, x_));
+  LocalVector flux = stiffness_[stiffness_of_[t]].lazyProduct(discrete_.traces.values(t, x_));
   flux -= local(coupling_, t, static_cast<int>(flux.size())).lazyProduct(augmented_.col(t));
   return flux;
 }
@@ -200,13 +200,13 @@ Outcome UzawaIteration::run(Progress& progress) {
 }
 
 Eigen::MatrixXd UzawaIteration::stress() const {
-  Eigen::MatrixXd stress(problem_.spaces().stresses(), problem_.mesh.triangles.size());
-  PerShape<AugmentedElimination> eliminations(problem_);
-  for (int t = 0; t < problem_.triangles(); ++t) {
+  Eigen::MatrixXd stress(discrete_.spaces().stresses(), discrete_.mesh.triangles.size());
+  PerShape<AugmentedElimination> eliminations(discrete_);
+  for (int t = 0; t < discrete_.triangles(); ++t) {
     const AugmentedElimination& elimination = eliminations(t, [&](const ElementMatrices& matrices) {
-      return AugmentedElimination(matrices, problem_.spaces(), settings_.augmentation);
+      return AugmentedElimination(matrices, discrete_.spaces(), settings_.augmentation);
     });
-    stress.col(t) = elimination.stress(problem_.traces.values(t, x_), augmented_.col(t));
+    stress.col(t) = elimination.stress(discrete_.traces.values(t, x_), augmented_.col(t));
   }
   return stress;
 }

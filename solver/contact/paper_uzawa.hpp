@@ -20,7 +20,7 @@ namespace signorini {
 class UzawaIteration {
  public:
   /// Eliminates and factors. Throws Cancelled and what Cholesky throws.
-  UzawaIteration(const Discretization& problem, const PaperUzawa& settings, Progress& progress);
+  UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Progress& progress);
 
   /// Iterates until the criterion is met, the iterates grow beyond bounds, or a limit is reached. What
   /// remains is the last finite iterate.
@@ -42,7 +42,7 @@ class UzawaIteration {
   void update_pressure();
   LocalVector flux_on_contact(int triangle) const;
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const PaperUzawa settings_;
 
   std::unique_ptr<const Cholesky> factor_;

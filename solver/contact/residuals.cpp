@@ -59,28 +59,28 @@ class StressNorm {
 /// of symmetry need.
 class Balance {
  public:
-  Balance(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& problem)
+  Balance(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& discrete)
       : solution_(solution),
-        problem_(problem),
-        per_edge_(problem.spaces().traces_per_edge()),
-        traces_(static_cast<int>(problem.mesh.edges.size()) * per_edge_),
+        discrete_(discrete),
+        per_edge_(discrete.spaces().traces_per_edge()),
+        traces_(static_cast<int>(discrete.mesh.edges.size()) * per_edge_),
         flux_(Eigen::VectorXd::Zero(traces_)),
         trace_(Eigen::VectorXd::Zero(traces_)),
-        skew_(Eigen::VectorXd::Zero(problem.mesh.points.size())),
+        skew_(Eigen::VectorXd::Zero(discrete.mesh.points.size())),
         skew_terms_(skew_),
-        shapes_(problem),
+        shapes_(discrete),
         norm_(clearance) {
-    for (int t = 0; t < problem.triangles(); ++t) add_triangle(t);
+    for (int t = 0; t < discrete.triangles(); ++t) add_triangle(t);
     compare_with_boundary(clearance);
     for (int point = 0; point < solution.rotation.size(); ++point)
-      skew_[point] += problem.coupling_load[problem.traces.rotation_at(point)];
+      skew_[point] += discrete.coupling_load[discrete.traces.rotation_at(point)];
   }
 
   double stress_norm() const { return norm_.value(); }
   double stress_norm_beside_pressures() const { return norm_.value_beside_pressures(); }
 
   double equilibrium() const {
-    const double size = std::sqrt(problem_.mesh.area());
+    const double size = std::sqrt(discrete_.mesh.area());
     const double volume =
         relative(std::sqrt(imbalance_square_), std::sqrt(load_square_) + stress_norm() / size);
     return std::max(volume,
@@ -92,7 +92,7 @@ class Balance {
   }
 
   double symmetry() const {
-    const double edge = std::sqrt(problem_.mesh.area() / problem_.triangles());
+    const double edge = std::sqrt(discrete_.mesh.area() / discrete_.triangles());
     return relative(skew_.lpNorm<Eigen::Infinity>(),
                     std::max(skew_terms_.lpNorm<Eigen::Infinity>(), edge * norm_.no_stress()));
   }
@@ -101,12 +101,12 @@ class Balance {
   void add_triangle(int t) {
     const Shape& shape = shapes_(t, [&](const ElementMatrices& matrices) -> Shape {
       const LocalMatrix& mass = matrices.displacement_mass;
-      return {matrices, mass.inverse(), problem_.element.stress_mass(problem_.mesh, t)};
+      return {matrices, mass.inverse(), discrete_.element.stress_mass(discrete_.mesh, t)};
     });
     const ElementMatrices& matrices = shape.matrices;
-    const LocalVector load = problem_.load.col(t);
+    const LocalVector load = discrete_.load.col(t);
     const LocalVector sigma = solution_.stress.col(t), u = solution_.displacement.col(t);
-    const LocalMatrix& b = problem_.spaces().divergence;
+    const LocalMatrix& b = discrete_.spaces().divergence;
     const LocalVector imbalance = b.lazyProduct(sigma) + load;
     imbalance_square_ += imbalance.dot(shape.mass_inverse.lazyProduct(imbalance));
     load_square_ += load.dot(shape.mass_inverse.lazyProduct(load));
@@ -116,29 +116,29 @@ class Balance {
     norm_.add(matrices.compliance, shape.stress_mass, sigma, strain, rise);
     LocalVector term = strain + rise;
     for (int z = 0; z < matrices.skew.rows(); ++z) add_corner(t, z, matrices.skew.row(z), sigma, term);
-    const int n = problem_.traces.traces_per_triangle();
+    const int n = discrete_.traces.traces_per_triangle();
     if (term.size() > n)
       interior_ = std::max(interior_, term.tail(term.size() - n).lpNorm<Eigen::Infinity>());
     add_edges(t, sigma.head(n), term.head(n));
   }
 
   void add_corner(int t, int z, const LocalVector& skew, const LocalVector& sigma, LocalVector& term) {
-    const int point = problem_.mesh.triangles[t][z];
+    const int point = discrete_.mesh.triangles[t][z];
     term += solution_.rotation[point] * skew;
     skew_[point] += skew.dot(sigma);
     skew_terms_[point] += skew.cwiseAbs().dot(sigma.cwiseAbs());
   }
 
   void add_edges(int t, LocalVector flux, LocalVector trace) {
-    if (problem_.traces.is_turned(t)) {
+    if (discrete_.traces.is_turned(t)) {
       const Eigen::Index n = flux.size();
-      const LocalMatrix map = problem_.traces.to_xy(t).topLeftCorner(n, n);
+      const LocalMatrix map = discrete_.traces.to_xy(t).topLeftCorner(n, n);
       flux = (map.transpose() * flux).eval();
       trace = (map.transpose() * trace).eval();
     }
     for (int j = 0; j < flux.size(); ++j) {
-      const int dof = problem_.traces.dof(t, j);
-      const bool first = problem_.mesh.edge_triangles[dof / per_edge_][0] == t;
+      const int dof = discrete_.traces.dof(t, j);
+      const bool first = discrete_.mesh.edge_triangles[dof / per_edge_][0] == t;
       flux_[dof] += flux[j];
       trace_[dof] += first ? trace[j] : -trace[j];
       largest_flux_ = std::max(largest_flux_, std::abs(flux[j]));
@@ -149,21 +149,21 @@ class Balance {
   /// rollers) the flux is t, and the trace is not tested, for τ n = 0 there; elsewhere the flux is free and
   /// the trace is data or the clearance.
   void compare_with_boundary(const Eigen::VectorXd& clearance) {
-    const TraceSpace& traces = problem_.traces;
+    const TraceSpace& traces = discrete_.traces;
     for (int dof = 0; dof < traces_; ++dof) {
-      if (problem_.mesh.edge_triangles[dof / per_edge_][1] >= 0) continue;
+      if (discrete_.mesh.edge_triangles[dof / per_edge_][1] >= 0) continue;
       if (traces.is_free(dof)) {
-        flux_[dof] -= problem_.coupling_load[traces[dof].unknown];
+        flux_[dof] -= discrete_.coupling_load[traces[dof].unknown];
         trace_[dof] = 0;
       } else {
         flux_[dof] = 0;
         trace_[dof] -= traces[dof].datum;
       }
     }
-    for (const ContactEdge& contact : problem_.clearance.edges)
-      for (int j = 0; j <= problem_.spaces().order; ++j) {
-        const int dof = contact.edge * per_edge_ + j * problem_.spaces().components, row = contact.rows[j];
-        if (problem_.clearance.rows[row].unknown >= 0) trace_[dof] -= traces[dof].sign * clearance[row];
+    for (const ContactEdge& contact : discrete_.clearance.edges)
+      for (int j = 0; j <= discrete_.spaces().order; ++j) {
+        const int dof = contact.edge * per_edge_ + j * discrete_.spaces().components, row = contact.rows[j];
+        if (discrete_.clearance.rows[row].unknown >= 0) trace_[dof] -= traces[dof].sign * clearance[row];
       }
   }
 
@@ -174,7 +174,7 @@ class Balance {
   };
 
   const Solution& solution_;
-  const Discretization& problem_;
+  const Discretization& discrete_;
   int per_edge_;
   int traces_;                  ///< degrees of freedom of m
   Eigen::VectorXd flux_;        ///< sum of the outward fluxes of both sides
@@ -200,23 +200,23 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
           relative(weight.dot(clearance.cwiseProduct(pressure).cwiseAbs()), weighted * scale)};
 }
 
-double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
+double mean_stress(const Discretization& discrete, const Eigen::MatrixXd& stress,
                    const Eigen::MatrixXd& displacement, const Eigen::VectorXd& clearance) {
   struct Shape {
     LocalMatrix compliance, stress_mass;
   };
   StressNorm norm(clearance);
-  PerShape<Shape> shapes(problem);
-  const LocalMatrix& b = problem.spaces().divergence;
-  for (int t = 0; t < problem.triangles(); ++t) {
+  PerShape<Shape> shapes(discrete);
+  const LocalMatrix& b = discrete.spaces().divergence;
+  for (int t = 0; t < discrete.triangles(); ++t) {
     const Shape& shape = shapes(t, [&](const ElementMatrices& matrices) -> Shape {
-      return {matrices.compliance, problem.element.stress_mass(problem.mesh, t)};
+      return {matrices.compliance, discrete.element.stress_mass(discrete.mesh, t)};
     });
     const LocalVector sigma = stress.col(t), u = displacement.col(t);
     norm.add(shape.compliance, shape.stress_mass, sigma, shape.compliance.lazyProduct(sigma),
              b.transpose().lazyProduct(u));
   }
-  return norm.value_beside_pressures() / std::sqrt(problem.mesh.area());
+  return norm.value_beside_pressures() / std::sqrt(discrete.mesh.area());
 }
 
 double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
@@ -225,17 +225,17 @@ double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
 }
 
 Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
-                    const Eigen::VectorXd& pressure, const Discretization& problem) {
-  const Balance balance(solution, clearance, problem);
+                    const Eigen::VectorXd& pressure, const Discretization& discrete) {
+  const Balance balance(solution, clearance, discrete);
   std::vector<int> tested;
   Eigen::VectorXd weight(clearance.size());
   for (int i = 0; i < static_cast<int>(weight.size()); ++i) {
-    weight[i] = problem.clearance.rows[i].weight;
-    if (problem.clearance.rows[i].unknown >= 0) tested.push_back(i);
+    weight[i] = discrete.clearance.rows[i].weight;
+    if (discrete.clearance.rows[i].unknown >= 0) tested.push_back(i);
   }
   const ContactResiduals contact =
       contact_residuals(clearance(tested), pressure(tested), weight(tested),
-                        balance.stress_norm_beside_pressures() / std::sqrt(problem.mesh.area()));
+                        balance.stress_norm_beside_pressures() / std::sqrt(discrete.mesh.area()));
   return {balance.equilibrium(), balance.constitutive(),  contact.penetration,
           contact.tension,       contact.complementarity, balance.symmetry()};
 }

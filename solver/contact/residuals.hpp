@@ -26,7 +26,7 @@ ContactResiduals contact_residuals(const Eigen::VectorXd& clearance, const Eigen
 /// ‖σ_h‖ / √|Ω|, or what counts as no stress at all: a body that moves without strain has only rounding for
 /// stress, and nothing to compare it with but what its displacement and clearance might have made.
 /// `clearance` has an entry a row.
-double mean_stress(const Discretization& problem, const Eigen::MatrixXd& stress,
+double mean_stress(const Discretization& discrete, const Eigen::MatrixXd& stress,
                    const Eigen::MatrixXd& displacement, const Eigen::VectorXd& clearance);
 
 /// What the stress in the body says of the contact.
@@ -53,6 +53,6 @@ double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
 ///
 /// `clearance` and `pressure` have one entry a row of the clearance space.
 Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
-                    const Eigen::VectorXd& pressure, const Discretization& problem);
+                    const Eigen::VectorXd& pressure, const Discretization& discrete);
 
 }  // namespace signorini

@@ -15,35 +15,35 @@ namespace {
 
 using Motions = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a motion a column
 
-RigidFrame frame_of(const Discretization& problem, const std::vector<int>& triangles) {
+RigidFrame frame_of(const Discretization& discrete, const std::vector<int>& triangles) {
   Point centre(0, 0);
   double area = 0;
   for (const int t : triangles) {
-    const double own = 0.5 * AffineMap(problem.mesh.corners(t)).determinant;
-    centre += own * problem.mesh.centroid(t);
+    const double own = 0.5 * AffineMap(discrete.mesh.corners(t)).determinant;
+    centre += own * discrete.mesh.centroid(t);
     area += own;
   }
-  return {problem.spaces().components, centre / area, std::sqrt(area)};
+  return {discrete.spaces().components, centre / area, std::sqrt(area)};
 }
 
 /// One body of the mesh with its rigid motions, its supports and its loads.
 class RigidBody {
  public:
-  RigidBody(const Discretization& problem, std::vector<int> triangles)
-      : frame_(frame_of(problem, triangles)),
-        problem_(problem),
+  RigidBody(const Discretization& discrete, std::vector<int> triangles)
+      : frame_(frame_of(discrete, triangles)),
+        discrete_(discrete),
         triangles_(std::move(triangles)),
-        is_own_(problem.mesh.triangles.size(), false),
-        components_(problem.spaces().components) {
+        is_own_(discrete.mesh.triangles.size(), false),
+        components_(discrete.spaces().components) {
     for (const int t : triangles_) is_own_[t] = true;
   }
 
   const RigidFrame& frame() const { return frame_; }
-  bool is_own(int boundary_edge) const { return is_own_[problem_.mesh.edge_triangles[boundary_edge][0]]; }
+  bool is_own(int boundary_edge) const { return is_own_[discrete_.mesh.edge_triangles[boundary_edge][0]]; }
 
   /// Names the body where there are others.
   std::string name() const {
-    if (triangles_.size() == problem_.mesh.triangles.size()) return "the body";
+    if (triangles_.size() == discrete_.mesh.triangles.size()) return "the body";
     return "the body around " + pair(frame_.centre());
   }
 
@@ -67,26 +67,26 @@ class RigidBody {
   void at_ends(const BoundaryPart& part, const Visit& visit) const {
     for (const int edge : part.edges)
       if (is_own(edge))
-        for (const int point : problem_.mesh.edges[edge])
-          visit(problem_.mesh.outward_normal(edge), problem_.mesh.points[point]);
+        for (const int point : discrete_.mesh.edges[edge])
+          visit(discrete_.mesh.outward_normal(edge), discrete_.mesh.points[point]);
   }
 
   /// Calls visit(direction, point, gap) at both ends of each own edge of Γ_C.
   template <typename Visit>
   void at_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : problem_.clearance.edges) {
+    for (const ContactEdge& contact : discrete_.clearance.edges) {
       if (!is_own(contact.edge)) continue;
       for (int end = 0; end < 2; ++end)
-        visit(contact.direction, problem_.mesh.points[problem_.mesh.edges[contact.edge][end]],
-              contact.gap[end * problem_.spaces().order]);
+        visit(contact.direction, discrete_.mesh.points[discrete_.mesh.edges[contact.edge][end]],
+              contact.gap[end * discrete_.spaces().order]);
     }
   }
 
   /// Calls visit(direction, point) in the middle of each own edge of Γ_C, where clearances of order 0 are.
   template <typename Visit>
   void in_middles_of_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : problem_.clearance.edges)
-      if (is_own(contact.edge)) visit(contact.direction, problem_.clearance.rows[contact.rows[0]].point);
+    for (const ContactEdge& contact : discrete_.clearance.edges)
+      if (is_own(contact.edge)) visit(contact.direction, discrete_.clearance.rows[contact.rows[0]].point);
   }
 
   /// The work of the loads on each of the three motions, and the sum of the sizes of its terms.
@@ -99,12 +99,12 @@ class RigidBody {
   };
   Work work() const {
     Work work;
-    const Mesh& mesh = problem_.mesh;
+    const Mesh& mesh = discrete_.mesh;
     for (const int t : triangles_) {
-      const LocalVector load = problem_.load.col(t);
+      const LocalVector load = discrete_.load.col(t);
       const auto corners = mesh.corners(t);
       for (int i = 0; i < load.size(); ++i) {
-        const Point x = problem_.spaces().order == 0 ? mesh.centroid(t) : corners[i / components_];
+        const Point x = discrete_.spaces().order == 0 ? mesh.centroid(t) : corners[i / components_];
         work.add(load[i], frame_.component(i % components_, x));
       }
       add_traction(t, work);
@@ -123,34 +123,34 @@ class RigidBody {
   }
 
   void add_traction(int t, Work& work) const {
-    const auto corners = problem_.mesh.corners(t);
-    const int per_edge = problem_.spaces().traces_per_edge();
+    const auto corners = discrete_.mesh.corners(t);
+    const int per_edge = discrete_.spaces().traces_per_edge();
     for (int j = 0; j < 3 * per_edge; ++j) {
-      const int dof = problem_.traces.dof(t, j), e = j / per_edge, function = j % per_edge / components_;
-      if (!problem_.traces.is_free(dof)) continue;
-      const double force = problem_.coupling_load[problem_.traces[dof].unknown];
+      const int dof = discrete_.traces.dof(t, j), e = j / per_edge, function = j % per_edge / components_;
+      if (!discrete_.traces.is_free(dof)) continue;
+      const double force = discrete_.coupling_load[discrete_.traces[dof].unknown];
       if (force == 0) continue;
       const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
-      const Point x = problem_.spaces().order == 0 ? Point((a + b) / 2) : (function == 0 ? a : b);
+      const Point x = discrete_.spaces().order == 0 ? Point((a + b) / 2) : (function == 0 ? a : b);
       work.add(force, frame_.component(j % components_, x));
     }
   }
 
   /// The third motion turns by 1 / size, and γ is minus the rotation.
   void add_couples(Work& work) const {
-    if (!problem_.spaces().leaves_couples()) return;
-    std::vector<bool> seen(problem_.mesh.points.size(), false);
+    if (!discrete_.spaces().leaves_couples()) return;
+    std::vector<bool> seen(discrete_.mesh.points.size(), false);
     for (const int t : triangles_)
-      for (const int point : problem_.mesh.triangles[t]) {
+      for (const int point : discrete_.mesh.triangles[t]) {
         if (seen[point]) continue;
         seen[point] = true;
-        const double couple = -problem_.coupling_load[problem_.traces.rotation_at(point)];
+        const double couple = -discrete_.coupling_load[discrete_.traces.rotation_at(point)];
         work.add(couple / frame_.size(), Eigen::RowVector3d::UnitZ());
       }
   }
 
   RigidFrame frame_;
-  const Discretization& problem_;
+  const Discretization& discrete_;
   std::vector<int> triangles_;
   std::vector<bool> is_own_;  ///< of each triangle of the mesh
   int components_;
@@ -181,14 +181,14 @@ class Conditions {
   int count_ = 0;
 };
 
-Motions left_free(const Discretization& problem, const RigidBody& body) {
+Motions left_free(const Discretization& discrete, const RigidBody& body) {
   Conditions conditions;
-  for (const BoundaryPart& part : problem.mesh.boundary) {
-    if (condition_on<Fixed>(problem.problem, part.name))
+  for (const BoundaryPart& part : discrete.mesh.boundary) {
+    if (condition_on<Fixed>(discrete.problem, part.name))
       body.at_ends(part, [&](const Vector&, const Point& x) {
-        for (int c = 0; c < problem.spaces().components; ++c) conditions.add(body.frame().component(c, x));
+        for (int c = 0; c < discrete.spaces().components; ++c) conditions.add(body.frame().component(c, x));
       });
-    if (condition_on<Roller>(problem.problem, part.name))
+    if (condition_on<Roller>(discrete.problem, part.name))
       body.at_ends(
           part, [&](const Vector& normal, const Point& x) { conditions.add(body.frame().along(normal, x)); });
   }
@@ -218,8 +218,8 @@ void refuse_sliding(const RigidBody& body, const Motions& free) {
 
 /// Means over edges, which are all that a clearance of order 0 has, do not see an edge that turns about its
 /// middle: on a disc they let it turn.
-void refuse_unseen(const Discretization& problem, const RigidBody& body, const Motions& free) {
-  if (problem.spaces().order > 0) return;
+void refuse_unseen(const Discretization& discrete, const RigidBody& body, const Motions& free) {
+  if (discrete.spaces().order > 0) return;
   Conditions conditions;
   body.in_middles_of_contact(
       [&](const Vector& direction, const Point& x) { conditions.add(body.frame().along(direction, x)); });
@@ -305,11 +305,11 @@ void refuse_floating(const RigidBody& body, const MotionBalance& balance) {
       "nothing tells where it rests; give a load, close the gaps or fix a part");
 }
 
-bool held_by_contact_alone(const Discretization& problem, const RigidBody& body) {
-  const Motions free = left_free(problem, body);
+bool held_by_contact_alone(const Discretization& discrete, const RigidBody& body) {
+  const Motions free = left_free(discrete, body);
   if (free.cols() == 0) return false;
   refuse_sliding(body, free);
-  refuse_unseen(problem, body, free);
+  refuse_unseen(discrete, body, free);
   const MotionBalance balance = balance_of(body, free);
   refuse_lifting(body, free, balance);
   refuse_floating(body, balance);
@@ -318,10 +318,10 @@ bool held_by_contact_alone(const Discretization& problem, const RigidBody& body)
 
 }  // namespace
 
-bool held_by_contact_alone(const Discretization& problem) {
+bool held_by_contact_alone(const Discretization& discrete) {
   bool any = false;
-  for (std::vector<int>& triangles : bodies(problem.mesh))
-    any = held_by_contact_alone(problem, RigidBody(problem, std::move(triangles))) || any;
+  for (std::vector<int>& triangles : bodies(discrete.mesh))
+    any = held_by_contact_alone(discrete, RigidBody(discrete, std::move(triangles))) || any;
   return any;
 }
 

@@ -9,6 +9,6 @@ namespace signorini {
 /// against, and a body that floats between its contacts. A mesh of several bodies is held only if each of
 /// them is. Returns whether contact alone holds a body in some motion. Throws SolveError that names the
 /// motion, and the body among several.
-bool held_by_contact_alone(const Discretization& problem);
+bool held_by_contact_alone(const Discretization& discrete);
 
 }  // namespace signorini

@@ -6,7 +6,7 @@
 namespace signorini {
 
 Discretization::Discretization(const Problem& posed, const Mesh& given, Progress* progress)
-    : problem(posed),
+    : discrete(posed),
       mesh(given),
       element(posed),
       body(posed, mesh, progress),
@@ -20,7 +20,7 @@ Discretization::Discretization(const Problem& posed, const Mesh& given, Progress
 }
 
 void Discretization::draw_near(double reach) {
-  clearance = make_clearance_space(problem, mesh, reach);
+  clearance = make_clearance_space(discrete, mesh, reach);
   traces.meet(clearance);
 }
 
@@ -51,18 +51,18 @@ void Discretization::take_up_traction() {
   }
 }
 
-void contact_forces(const Discretization& problem, const std::function<LocalVector(int triangle)>& fluxes,
+void contact_forces(const Discretization& discrete, const std::function<LocalVector(int triangle)>& fluxes,
                     Eigen::VectorXd& forces) {
-  const int per_edge = problem.spaces().traces_per_edge(), d = problem.spaces().components;
-  forces.setZero(static_cast<Eigen::Index>(problem.clearance.rows.size()));
-  for (const ContactEdge& contact : problem.clearance.edges) {
-    const int t = problem.mesh.edge_triangles[contact.edge][0];
-    const int first = problem.mesh.local_edge(t, contact.edge) * per_edge;
+  const int per_edge = discrete.spaces().traces_per_edge(), d = discrete.spaces().components;
+  forces.setZero(static_cast<Eigen::Index>(discrete.clearance.rows.size()));
+  for (const ContactEdge& contact : discrete.clearance.edges) {
+    const int t = discrete.mesh.edge_triangles[contact.edge][0];
+    const int first = discrete.mesh.local_edge(t, contact.edge) * per_edge;
     const LocalVector outward = fluxes(t);
     for (int j = first; j < first + per_edge; j += d) {
       // −σ_n is σ·n for the membrane.
       const double force = d == 1 ? outward[j] : -contact.direction.dot(outward.segment<2>(j));
-      forces[contact.rows[problem.traces.dof(t, j) % per_edge / d]] += force;
+      forces[contact.rows[discrete.traces.dof(t, j) % per_edge / d]] += force;
     }
   }
 }

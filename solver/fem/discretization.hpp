@@ -46,7 +46,7 @@ struct Discretization {
 
 /// <−σ_n, φ_i> for every row of the clearance space, the force that the foundation exerts, from the outward
 /// fluxes of the triangles on Γ_C in x and y components.
-void contact_forces(const Discretization& problem, const std::function<LocalVector(int triangle)>& fluxes,
+void contact_forces(const Discretization& discrete, const std::function<LocalVector(int triangle)>& fluxes,
                     Eigen::VectorXd& forces);
 
 }  // namespace signorini

@@ -20,22 +20,22 @@ namespace signorini {
 template <typename Value>
 class PerShape {
  public:
-  explicit PerShape(const Discretization& problem)
-      : problem_(problem), digits_per_length_(digits_per_length(problem.mesh)) {}
+  explicit PerShape(const Discretization& discrete)
+      : discrete_(discrete), digits_per_length_(digits_per_length(discrete.mesh)) {}
 
   /// The value for a triangle, made if need be, from its matrices if `make` takes some; valid until the next
   /// call.
   template <typename Make>
   Value& operator()(int triangle, const Make& make) {
-    const Eigen::Matrix2d jacobian = AffineMap(problem_.mesh.corners(triangle)).jacobian;
+    const Eigen::Matrix2d jacobian = AffineMap(discrete_.mesh.corners(triangle)).jacobian;
     std::unique_ptr<Remembered>& found = remembered_[place(jacobian)];
     const bool known =
-        found && problem_.element.has_constant_material() && is_same(found->jacobian, jacobian);
+        found && discrete_.element.has_constant_material() && is_same(found->jacobian, jacobian);
     if (!known) {
       if constexpr (std::invocable<Make>)
         found.reset(new Remembered{jacobian, make()});
       else
-        found.reset(new Remembered{jacobian, make(problem_.element.matrices(problem_.mesh, triangle))});
+        found.reset(new Remembered{jacobian, make(discrete_.element.matrices(discrete_.mesh, triangle))});
     }
     return found->value;
   }
@@ -75,7 +75,7 @@ class PerShape {
     return mixed >> (64 - kBits);
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const double digits_per_length_;
   std::array<std::unique_ptr<Remembered>, 1 << kBits> remembered_;
 };

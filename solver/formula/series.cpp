@@ -73,14 +73,14 @@ Series integral(const Series& a, const Series& d, const Interval& values) {
   return all;
 }
 
-/// From the Taylor coefficients φ_m(α) a^(α − m) of a^α, where a reaches 0: they may be infinite there, of
-/// one sign.
-Series power_at_zero(const Series& a, double exponent, const Interval& values) {
+/// By the Taylor coefficients φ_m(α) a^(α − m) of a^α, whose sums end for a whole exponent. Where a reaches 0
+/// they may be infinite, of one sign.
+Series power_by_taylor(const Series& a, double exponent, const Interval& values) {
   Series all(a.order(), values), beyond = a, beyond_to_m(a.order(), 1);
   beyond[0] = 0;
-  double number = 1;
-  for (int m = 1; m <= a.order(); ++m) {
-    number *= (exponent - m + 1) / m;
+  Interval number = 1;
+  for (int m = 1; m <= a.order() && m - 1 != exponent; ++m) {
+    number = number * (exponent - m + 1) / double(m);
     beyond_to_m = product(beyond_to_m, beyond);
     const Interval own = number * signorini::power(a[0], exponent - m);
     for (int k = m; k <= a.order(); ++k) all[k] += own * beyond_to_m[k];
@@ -91,14 +91,9 @@ Series power_at_zero(const Series& a, double exponent, const Interval& values) {
 /// y a' α = a y'.
 Series power(const Series& a, double exponent) {
   const Interval values = signorini::power(a[0], exponent);
-  if (exponent >= 0 && exponent <= 8 && exponent == std::floor(exponent)) {
-    Series all(a.order(), 1);
-    for (int i = 0; i < static_cast<int>(exponent) / 2; ++i) all = product(all, square(a));
-    if (std::fmod(exponent, 2) == 1) all = product(all, a);
-    all[0] = values;
-    return all;
-  }
-  if (holds_zero(a[0])) return is_known(values) ? power_at_zero(a, exponent, values) : with_values(a, values);
+  const bool is_whole = exponent >= 0 && exponent == std::floor(exponent);
+  if (is_whole || holds_zero(a[0]))
+    return is_known(values) ? power_by_taylor(a, exponent, values) : with_values(a, values);
   Series all(a.order(), values);
   for (int k = 1; k <= a.order(); ++k) {
     Interval rest = 0;

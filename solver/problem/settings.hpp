@@ -16,7 +16,7 @@ struct PaperUzawa {
 
 /// The same iteration in the limit r → ∞, ρ_u = r: the displacement is eliminated exactly, and the step on
 /// the clearance remains, accelerated by conjugate gradients on what is open.
-struct AcceleratedUzawa {
+struct Mprgp {
   double tolerance = 1e-8;  ///< on every relative contact residual
   int max_iterations = 10000;
 };
@@ -26,10 +26,10 @@ struct ActiveSet {
   int max_iterations = 1000;  ///< dense steps
 };
 
-using Method = std::variant<AcceleratedUzawa, PaperUzawa, ActiveSet>;
+using Method = std::variant<Mprgp, PaperUzawa, ActiveSet>;
 
 struct Settings {
-  Method method = AcceleratedUzawa{};
+  Method method = Mprgp{};
   std::optional<double> time_limit;  ///< seconds for the whole solve
   double spent = 0;  ///< seconds that count for the limit, but were before the solve: reading the problem
 };

@@ -32,18 +32,18 @@ struct Corners {
   Point one{0, 0};
 };
 
-std::map<int, Corners> touching_corners(const Discretization& problem, const Eigen::VectorXd& clearance) {
-  const Mesh& mesh = problem.mesh;
+std::map<int, Corners> touching_corners(const Discretization& discrete, const Eigen::VectorXd& clearance) {
+  const Mesh& mesh = discrete.mesh;
   std::map<int, Side> ending, beginning;
-  for (const ContactEdge& contact : problem.clearance.edges) {
-    const int part = problem.clearance.rows[contact.rows[0]].part;
+  for (const ContactEdge& contact : discrete.clearance.edges) {
+    const int part = discrete.clearance.rows[contact.rows[0]].part;
     const auto [from, to] = domain_on_the_left(mesh, contact.edge);
     const auto side = [&](int point) {
       const int end = mesh.edges[contact.edge][0] == point ? 0 : 1;
       return Side{part, mesh.on_boundary(contact.edge, end).normal, is_closed(contact, clearance)};
     };
     // Along a direction of its own nothing bends.
-    const auto& condition = *condition_on<Contact>(problem.problem, mesh.boundary[part].name);
+    const auto& condition = *condition_on<Contact>(discrete.problem, mesh.boundary[part].name);
     if (!condition.direction.isZero(0)) continue;
     beginning.insert_or_assign(from, side(from));
     ending.insert_or_assign(to, side(to));
@@ -62,17 +62,17 @@ std::map<int, Corners> touching_corners(const Discretization& problem, const Eig
 
 }  // namespace
 
-std::vector<std::string> notes_on_curves(const Discretization& problem, const Eigen::VectorXd& clearance) {
+std::vector<std::string> notes_on_curves(const Discretization& discrete, const Eigen::VectorXd& clearance) {
   std::vector<std::string> notes;
-  if (problem.spaces().components == 2)
-    for (const auto& [part, corners] : touching_corners(problem, clearance))
+  if (discrete.spaces().components == 2)
+    for (const auto& [part, corners] : touching_corners(discrete, clearance))
       notes.push_back(
-          "the contact " + problem.mesh.boundary[part].name + " bends outwards where it touches, at " +
+          "the contact " + discrete.mesh.boundary[part].name + " bends outwards where it touches, at " +
           std::to_string(corners.count) + (corners.count == 1 ? " corner, " : " corners such as ") +
           to_string(corners.one) +
           ": there the true pressure of this polygon is infinite, and max_pressure grows as the mesh "
           "gets finer; if it stands for a curve, make it arcs, or give the contact a direction");
-  if (!problem.mesh.circles.empty())
+  if (!discrete.mesh.circles.empty())
     notes.push_back(
         "the error bound is of the body that the mesh is, with chords for its arcs and the data read on the "
         "arcs; "

@@ -13,6 +13,6 @@ namespace signorini {
 ///
 /// Between two sides that touch without friction, at an angle ω, the displacement has a part r^(π/ω − 1): for
 /// ω in (π/2, π) its stress is infinite in the corner. `clearance`: an entry a row.
-std::vector<std::string> notes_on_curves(const Discretization& problem, const Eigen::VectorXd& clearance);
+std::vector<std::string> notes_on_curves(const Discretization& discrete, const Eigen::VectorXd& clearance);
 
 }  // namespace signorini

@@ -7,32 +7,32 @@ namespace signorini {
 namespace {
 
 /// The first of the fluxes of an edge in its triangle.
-int first_flux(const Discretization& problem, int triangle, int edge) {
-  return problem.mesh.local_edge(triangle, edge) * problem.spaces().traces_per_edge();
+int first_flux(const Discretization& discrete, int triangle, int edge) {
+  return discrete.mesh.local_edge(triangle, edge) * discrete.spaces().traces_per_edge();
 }
 
-int triangle_at(const Discretization& problem, int edge) {
-  return problem.mesh.edge_triangles[edge][0];
+int triangle_at(const Discretization& discrete, int edge) {
+  return discrete.mesh.edge_triangles[edge][0];
 }
 
 }  // namespace
 
-double FluxFunctional::operator()(const Discretization& problem, const Eigen::MatrixXd& stress) const {
+double FluxFunctional::operator()(const Discretization& discrete, const Eigen::MatrixXd& stress) const {
   double sum = constant;
   for (const auto& [edge, weights] : edges) {
-    const int t = triangle_at(problem, edge);
-    sum += weights.dot(stress.col(t).segment(first_flux(problem, t, edge), weights.size()));
+    const int t = triangle_at(discrete, edge);
+    sum += weights.dot(stress.col(t).segment(first_flux(discrete, t, edge), weights.size()));
   }
   return sum;
 }
 
-std::vector<FluxFunctional> reactions_on(const Discretization& problem, const BoundaryPart& part) {
-  const int d = problem.spaces().components, order = problem.spaces().order;
+std::vector<FluxFunctional> reactions_on(const Discretization& discrete, const BoundaryPart& part) {
+  const int d = discrete.spaces().components, order = discrete.spaces().order;
   std::vector<FluxFunctional> reactions(d == 1 ? 1 : 3);
-  const TractionField& traction = problem.traction;
+  const TractionField& traction = discrete.traction;
   for (const int edge : part.edges) {
-    const int t = triangle_at(problem, edge), e = problem.mesh.local_edge(t, edge);
-    const auto corners = problem.mesh.corners(t);
+    const int t = triangle_at(discrete, edge), e = discrete.mesh.local_edge(t, edge);
+    const auto corners = discrete.mesh.corners(t);
     const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
     LocalVector force[2], moment = LocalVector::Zero(d * (order + 1));
     for (LocalVector& weights : force) weights = moment;
@@ -43,20 +43,20 @@ std::vector<FluxFunctional> reactions_on(const Discretization& problem, const Bo
     }
     for (int c = 0; c < d; ++c) reactions[c].edges.push_back({edge, force[c]});
     if (d == 2) reactions[2].edges.push_back({edge, moment});
-    if (problem.spaces().leaves_couples() && traction.acts_on(edge))
-      reactions[2].constant += couple_of_traction(traction, problem.mesh, edge);
+    if (discrete.spaces().leaves_couples() && traction.acts_on(edge))
+      reactions[2].constant += couple_of_traction(traction, discrete.mesh, edge);
   }
   return reactions;
 }
 
-FluxFunctional contact_force_on(const Discretization& problem, int row) {
-  const int d = problem.spaces().components, per_edge = problem.spaces().traces_per_edge();
+FluxFunctional contact_force_on(const Discretization& discrete, int row) {
+  const int d = discrete.spaces().components, per_edge = discrete.spaces().traces_per_edge();
   FluxFunctional force;
-  for (const ContactEdge& contact : problem.clearance.edges) {
-    const int t = triangle_at(problem, contact.edge), first = first_flux(problem, t, contact.edge);
+  for (const ContactEdge& contact : discrete.clearance.edges) {
+    const int t = triangle_at(discrete, contact.edge), first = first_flux(discrete, t, contact.edge);
     LocalVector weights = LocalVector::Zero(per_edge);
     for (int j = 0; j < per_edge; j += d) {
-      if (contact.rows[problem.traces.dof(t, first + j) % per_edge / d] != row) continue;
+      if (contact.rows[discrete.traces.dof(t, first + j) % per_edge / d] != row) continue;
       // −σ_n is σ·n for the membrane.
       if (d == 1)
         weights[j] = 1;
@@ -68,14 +68,14 @@ FluxFunctional contact_force_on(const Discretization& problem, int row) {
   return force;
 }
 
-Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& problem,
+Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& discrete,
                          const Operator& made, Cholesky::Workspace& workspace, Progress& progress) {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.traces.unknowns());
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(discrete.traces.unknowns());
   for (const auto& [edge, weights] : functional.edges) {
-    const int t = triangle_at(problem, edge);
-    LocalVector coupling = LocalVector::Zero(problem.traces.dofs_per_triangle());
-    coupling.segment(first_flux(problem, t, edge), weights.size()) = weights;
-    add_forces(problem, t, coupling, forces);
+    const int t = triangle_at(discrete, edge);
+    LocalVector coupling = LocalVector::Zero(discrete.traces.dofs_per_triangle());
+    coupling.segment(first_flux(discrete, t, edge), weights.size()) = weights;
+    add_forces(discrete, t, coupling, forces);
   }
   return made.factor().condense(forces, workspace, progress).trailing;
 }

@@ -16,12 +16,12 @@ bool is_answer(const Residuals& left, double tolerance) {
   return std::max({left.penetration, left.tension, left.complementarity}) <= std::max(1e-9, tolerance);
 }
 
-bool is_answer(const Residuals& left, const AcceleratedUzawa& method) {
+bool is_answer(const Residuals& left, const Mprgp& method) {
   return is_answer(left, method.tolerance);
 }
 
 bool is_answer(const Residuals& left, const ActiveSet&) {
-  return is_answer(left, AcceleratedUzawa{}.tolerance);
+  return is_answer(left, Mprgp{}.tolerance);
 }
 
 std::string why_stalled(const Settings& settings, const std::string& after) {

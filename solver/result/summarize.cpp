@@ -21,11 +21,11 @@
 namespace signorini {
 namespace {
 
-Eigen::VectorXd contact_pressure(const Discretization& problem, const Eigen::MatrixXd& stress) {
+Eigen::VectorXd contact_pressure(const Discretization& discrete, const Eigen::MatrixXd& stress) {
   Eigen::VectorXd forces;
   contact_forces(
-      problem, [&](int t) -> LocalVector { return stress.col(t); }, forces);
-  return contact_pressure(problem.clearance, forces);
+      discrete, [&](int t) -> LocalVector { return stress.col(t); }, forces);
+  return contact_pressure(discrete.clearance, forces);
 }
 
 }  // namespace
@@ -108,61 +108,61 @@ ContactSummary sum_up(const std::vector<ContactPart>& parts) {
 namespace {
 
 /// The traces m = E (M σ + Bᵀ u + Aᵀ γ) of the displacement as a triangle sees them, in x and y components.
-LocalVector trace_of(const Discretization& problem, const Solution& solution, int t,
+LocalVector trace_of(const Discretization& discrete, const Solution& solution, int t,
                      const ElementMatrices& matrices) {
   LocalVector term = matrices.compliance * solution.stress.col(t) +
-                     problem.spaces().divergence.transpose() * solution.displacement.col(t);
+                     discrete.spaces().divergence.transpose() * solution.displacement.col(t);
   for (int z = 0; z < matrices.skew.rows(); ++z)
-    term += solution.rotation[problem.mesh.triangles[t][z]] * matrices.skew.row(z).transpose();
-  return term.head(problem.traces.traces_per_triangle());
+    term += solution.rotation[discrete.mesh.triangles[t][z]] * matrices.skew.row(z).transpose();
+  return term.head(discrete.traces.traces_per_triangle());
 }
 
 /// <t,u> on one boundary edge.
-double work_of_traction(const Discretization& problem, const Solution& solution, int edge) {
-  const int t = problem.mesh.edge_triangles[edge][0], n = problem.spaces().traces_per_edge();
-  const int first = problem.mesh.local_edge(t, edge) * n;
-  const LocalVector trace = trace_of(problem, solution, t, problem.element.matrices(problem.mesh, t));
+double work_of_traction(const Discretization& discrete, const Solution& solution, int edge) {
+  const int t = discrete.mesh.edge_triangles[edge][0], n = discrete.spaces().traces_per_edge();
+  const int first = discrete.mesh.local_edge(t, edge) * n;
+  const LocalVector trace = trace_of(discrete, solution, t, discrete.element.matrices(discrete.mesh, t));
   double sum = 0;
   for (int j = first; j < first + n; ++j) {
-    const int dof = problem.traces.dof(t, j);
-    if (problem.traces.is_free(dof)) sum += problem.coupling_load[problem.traces[dof].unknown] * trace[j];
+    const int dof = discrete.traces.dof(t, j);
+    if (discrete.traces.is_free(dof)) sum += discrete.coupling_load[discrete.traces[dof].unknown] * trace[j];
   }
   return sum;
 }
 
 /// ½(Cσ,σ) − (f,u) − <t,u>, where u turns with the rotation if the spaces leave it the couples.
-double energy(const Discretization& problem, const Solution& solution) {
+double energy(const Discretization& discrete, const Solution& solution) {
   double sum = 0;
-  PerShape<LocalMatrix> compliances(problem);
-  for (int t = 0; t < problem.triangles(); ++t) {
+  PerShape<LocalMatrix> compliances(discrete);
+  for (int t = 0; t < discrete.triangles(); ++t) {
     const LocalMatrix& compliance =
         compliances(t, [](const ElementMatrices& matrices) { return matrices.compliance; });
     const LocalVector sigma = solution.stress.col(t);
     sum += 0.5 * sigma.dot(compliance.lazyProduct(sigma)) -
-           problem.load.col(t).dot(solution.displacement.col(t));
+           discrete.load.col(t).dot(solution.displacement.col(t));
   }
-  for (const BoundaryPart& part : problem.mesh.boundary)
-    for (const int edge : part.edges) sum -= work_of_traction(problem, solution, edge);
+  for (const BoundaryPart& part : discrete.mesh.boundary)
+    for (const int edge : part.edges) sum -= work_of_traction(discrete, solution, edge);
   for (int point = 0; point < solution.rotation.size(); ++point)
-    sum -= problem.coupling_load[problem.traces.rotation_at(point)] * solution.rotation[point];
+    sum -= discrete.coupling_load[discrete.traces.rotation_at(point)] * solution.rotation[point];
   return sum;
 }
 
-Reaction reaction(const Discretization& problem, const BoundaryPart& part, const Eigen::MatrixXd& stress) {
+Reaction reaction(const Discretization& discrete, const BoundaryPart& part, const Eigen::MatrixXd& stress) {
   std::vector<double> values;
-  for (const FluxFunctional& functional : reactions_on(problem, part))
-    values.push_back(functional(problem, stress));
+  for (const FluxFunctional& functional : reactions_on(discrete, part))
+    values.push_back(functional(discrete, stress));
   return make_reaction(part.name, values);
 }
 
-Unknowns count_unknowns(const Discretization& problem) {
-  const std::int64_t edges = static_cast<std::int64_t>(problem.mesh.edges.size());
-  const std::int64_t triangles = problem.triangles();
-  const Spaces& spaces = problem.spaces();
-  const int inner = spaces.stresses() - problem.traces.traces_per_triangle();
+Unknowns count_unknowns(const Discretization& discrete) {
+  const std::int64_t edges = static_cast<std::int64_t>(discrete.mesh.edges.size());
+  const std::int64_t triangles = discrete.triangles();
+  const Spaces& spaces = discrete.spaces();
+  const int inner = spaces.stresses() - discrete.traces.traces_per_triangle();
   return {edges * spaces.traces_per_edge() + triangles * inner, triangles * spaces.displacements(),
-          problem.clearance.unknowns,
-          spaces.rotations() ? static_cast<std::int64_t>(problem.mesh.points.size()) : 0};
+          discrete.clearance.unknowns,
+          spaces.rotations() ? static_cast<std::int64_t>(discrete.mesh.points.size()) : 0};
 }
 
 /// What must be known before the numbers are used, and what would make them better.
@@ -217,39 +217,39 @@ Timings timings(const Progress& progress) {
           progress.seconds_in(Phase::certify),   progress.seconds()};
 }
 
-Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings,
+Solution describe(const Discretization& discrete, const Fields& fields, const Settings& settings,
                   Progress& progress) {
   Solution solution;
   Summary& summary = solution.summary;
-  solution.scheme = problem.problem.scheme;
-  solution.mesh = problem.mesh;
-  solution.components = problem.spaces().components;
+  solution.scheme = discrete.problem.scheme;
+  solution.mesh = discrete.mesh;
+  solution.components = discrete.spaces().components;
   solution.stress = fields.stress;
   solution.displacement = fields.displacement;
-  solution.rotation = problem.traces.rotation(fields.coupling);
+  solution.rotation = discrete.traces.rotation(fields.coupling);
   progress.check();
-  summary.energy = energy(problem, solution);
-  solution.stress_at_centroids = stress_at_centroids(problem.mesh, problem.spaces(), solution.stress);
-  solution.displacement_at_points = displacement_at_points(problem.problem, solution);
+  summary.energy = energy(discrete, solution);
+  solution.stress_at_centroids = stress_at_centroids(discrete.mesh, discrete.spaces(), solution.stress);
+  solution.displacement_at_points = displacement_at_points(discrete.problem, solution);
   solution.out_of_plane_stress =
-      out_of_plane_stress(problem.problem.material, problem.mesh, solution.stress_at_centroids);
-  for (const BoundaryPart& part : problem.mesh.boundary)
-    summary.parts.push_back(reaction(problem, part, solution.stress));
-  const Eigen::VectorXd clearance = problem.clearance.clearance(fields.clearance);
-  const Eigen::VectorXd pressure = contact_pressure(problem, solution.stress);
-  solution.contact = contact_parts(problem.clearance, problem.mesh, clearance, pressure);
+      out_of_plane_stress(discrete.problem.material, discrete.mesh, solution.stress_at_centroids);
+  for (const BoundaryPart& part : discrete.mesh.boundary)
+    summary.parts.push_back(reaction(discrete, part, solution.stress));
+  const Eigen::VectorXd clearance = discrete.clearance.clearance(fields.clearance);
+  const Eigen::VectorXd pressure = contact_pressure(discrete, solution.stress);
+  solution.contact = contact_parts(discrete.clearance, discrete.mesh, clearance, pressure);
 
   progress.check();
-  summary.residuals = residuals(solution, clearance, pressure, problem);
+  summary.residuals = residuals(solution, clearance, pressure, discrete);
   summary.outcome = judged(fields.outcome, summary.residuals, settings);
   summary.iterations = progress.iterations();
   summary.advice = advice(settings, summary.outcome, summary.iterations);
   summary.method = std::holds_alternative<ActiveSet>(settings.method) ? "active_set" : "uzawa";
-  summary.notes = problem.mesh.notes;
-  std::ranges::move(notes_on_curves(problem, clearance), std::back_inserter(summary.notes));
+  summary.notes = discrete.mesh.notes;
+  std::ranges::move(notes_on_curves(discrete, clearance), std::back_inserter(summary.notes));
   std::ranges::move(notes_on_strains(solution), std::back_inserter(summary.notes));
-  summary.triangles = problem.triangles();
-  summary.unknowns = count_unknowns(problem);
+  summary.triangles = discrete.triangles();
+  summary.unknowns = count_unknowns(discrete);
   summary.contact = sum_up(solution.contact);
   summary.timings = timings(progress);
   solution.history = progress.take_history();

@@ -41,7 +41,7 @@ Reaction make_reaction(std::string part, const std::vector<double>& values);
 /// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone:
 /// contact pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not
 /// finite.
-Solution describe(const Discretization& problem, const Fields& fields, const Settings& settings,
+Solution describe(const Discretization& discrete, const Fields& fields, const Settings& settings,
                   Progress& progress);
 
 /// Stress and bound are rounding beside what displacement and clearance might have made, as of a body that

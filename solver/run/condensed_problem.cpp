@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "certify/certificate.hpp"
-#include "contact/accelerated_uzawa.hpp"
 #include "contact/complete.hpp"
+#include "contact/mprgp.hpp"
 #include "contact/rigid_motions.hpp"
 #include "system/hybrid_system.hpp"
 
@@ -31,13 +31,13 @@ double diameter(const Mesh& mesh) {
 }
 
 /// The forces on the contact unknowns by the stress, w p.
-Eigen::VectorXd forces_on_unknowns(const Discretization& problem, const Eigen::MatrixXd& stress,
+Eigen::VectorXd forces_on_unknowns(const Discretization& discrete, const Eigen::MatrixXd& stress,
                                    Eigen::Index count) {
   Eigen::VectorXd on_rows, forces(count);
   contact_forces(
-      problem, [&](int t) -> LocalVector { return stress.col(t); }, on_rows);
-  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i)
-    if (const int unknown = problem.clearance.rows[i].unknown; unknown >= 0)
+      discrete, [&](int t) -> LocalVector { return stress.col(t); }, on_rows);
+  for (std::size_t i = 0; i < discrete.clearance.rows.size(); ++i)
+    if (const int unknown = discrete.clearance.rows[i].unknown; unknown >= 0)
       forces[unknown] = on_rows[static_cast<Eigen::Index>(i)];
   return forces;
 }
@@ -53,7 +53,7 @@ ContactResult find_clearance(const ContactComplement& contact, const Method& met
   if (contact.size() == 0) return {};
   if (const auto* exact = std::get_if<ActiveSet>(&method))
     return active_set(contact, *exact, progress, start);
-  return accelerated_uzawa(contact, std::get<AcceleratedUzawa>(method), progress, body, start);
+  return mprgp(contact, std::get<Mprgp>(method), progress, body, start);
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,

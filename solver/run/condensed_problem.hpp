@@ -12,7 +12,7 @@ namespace signorini {
 
 /// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
 /// begins from the start, clearances ≥ 0, or from 0 if there is none. For `body` see
-/// accelerated_uzawa().
+/// mprgp().
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const StateOfBody& body, const Eigen::VectorXd& start = {});
 

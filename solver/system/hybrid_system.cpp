@@ -87,47 +87,47 @@ class Dofs {
 
 }  // namespace
 
-HybridSystem assemble(const Discretization& problem, Progress& progress) {
+HybridSystem assemble(const Discretization& discrete, Progress& progress) {
   HybridSystem system;
   ElementSum& sum = system.matrix;
-  sum.size = problem.traces.unknowns();
-  sum.per_element = problem.traces.dofs_per_triangle();
-  system.right = problem.coupling_load;
-  PerShape<NumberedShape> shapes(problem);
-  for (int t = 0; t < problem.triangles(); ++t) {
+  sum.size = discrete.traces.unknowns();
+  sum.per_element = discrete.traces.dofs_per_triangle();
+  system.right = discrete.coupling_load;
+  PerShape<NumberedShape> shapes(discrete);
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     const auto& [shape, number] = shapes(t, [&](const ElementMatrices& matrices) -> NumberedShape {
-      const Shape made = eliminate(matrices, problem.spaces());
+      const Shape made = eliminate(matrices, discrete.spaces());
       return {made, append(sum, made.stiffness)};
     });
-    const Dofs dofs(problem.traces, t);
+    const Dofs dofs(discrete.traces, t);
     sum.unknowns.insert(sum.unknowns.end(), dofs.unknowns().begin(), dofs.unknowns().end());
     sum.matrix_of.push_back(dofs.are_plain() ? number : append(sum, dofs.turned(shape.stiffness)));
-    sum.centres.push_back(problem.mesh.centroid(t));
-    dofs.add_load(shape.coupling_load.lazyProduct(problem.load.col(t)), shape.stiffness, system.right);
+    sum.centres.push_back(discrete.mesh.centroid(t));
+    dofs.add_load(shape.coupling_load.lazyProduct(discrete.load.col(t)), shape.stiffness, system.right);
   }
   return system;
 }
 
-Eigen::VectorXd assemble_right(const Discretization& problem, Progress& progress) {
-  Eigen::VectorXd right = problem.coupling_load;
-  PerShape<Shape> shapes(problem);
-  for (int t = 0; t < problem.triangles(); ++t) {
+Eigen::VectorXd assemble_right(const Discretization& discrete, Progress& progress) {
+  Eigen::VectorXd right = discrete.coupling_load;
+  PerShape<Shape> shapes(discrete);
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    const Dofs dofs(problem.traces, t);
-    const LocalVector load = problem.load.col(t);
+    const Dofs dofs(discrete.traces, t);
+    const LocalVector load = discrete.load.col(t);
     if (!dofs.has_data() && load.isZero(0)) continue;
     const Shape& shape =
-        shapes(t, [&](const ElementMatrices& matrices) { return eliminate(matrices, problem.spaces()); });
+        shapes(t, [&](const ElementMatrices& matrices) { return eliminate(matrices, discrete.spaces()); });
     dofs.add_load(shape.coupling_load.lazyProduct(load), shape.stiffness, right);
   }
   return right;
 }
 
-void add_forces(const Discretization& problem, int triangle, const LocalVector& coupling,
+void add_forces(const Discretization& discrete, int triangle, const LocalVector& coupling,
                 Eigen::VectorXd& forces) {
-  const Elimination elimination(problem.element.matrices(problem.mesh, triangle), problem.spaces());
-  Dofs(problem.traces, triangle).add(elimination.stiffness() * coupling, forces);
+  const Elimination elimination(discrete.element.matrices(discrete.mesh, triangle), discrete.spaces());
+  Dofs(discrete.traces, triangle).add(elimination.stiffness() * coupling, forces);
 }
 
 }  // namespace signorini

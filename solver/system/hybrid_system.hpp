@@ -14,13 +14,13 @@ struct HybridSystem {
 };
 
 /// Eliminates triangle by triangle and adds up. Throws Cancelled.
-HybridSystem assemble(const Discretization& problem, Progress& progress);
+HybridSystem assemble(const Discretization& discrete, Progress& progress);
 
 /// The right side b alone, for a matrix that is factored already. Throws Cancelled.
-Eigen::VectorXd assemble_right(const Discretization& problem, Progress& progress);
+Eigen::VectorXd assemble_right(const Discretization& discrete, Progress& progress);
 
 /// Adds K c of one triangle to the forces on the unknowns, for coupling coefficients c in x and y components.
-void add_forces(const Discretization& problem, int triangle, const LocalVector& coupling,
+void add_forces(const Discretization& discrete, int triangle, const LocalVector& coupling,
                 Eigen::VectorXd& forces);
 
 }  // namespace signorini

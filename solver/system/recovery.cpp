@@ -19,25 +19,25 @@ void subtract_forces(const TraceSpace& traces, int triangle, LocalVector force, 
 
 }  // namespace
 
-Recovered recover(const Discretization& problem, const Eigen::VectorXd& x, Progress& progress) {
-  const TraceSpace& traces = problem.traces;
-  Recovered all{Eigen::MatrixXd(problem.spaces().stresses(), problem.triangles()),
-                Eigen::MatrixXd(problem.spaces().displacements(), problem.triangles()),
-                problem.coupling_load};
-  PerShape<Elimination> eliminations(problem);
-  for (int t = 0; t < problem.triangles(); ++t) {
+Recovered recover(const Discretization& discrete, const Eigen::VectorXd& x, Progress& progress) {
+  const TraceSpace& traces = discrete.traces;
+  Recovered all{Eigen::MatrixXd(discrete.spaces().stresses(), discrete.triangles()),
+                Eigen::MatrixXd(discrete.spaces().displacements(), discrete.triangles()),
+                discrete.coupling_load};
+  PerShape<Elimination> eliminations(discrete);
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     const Elimination& elimination = eliminations(
-        t, [&](const ElementMatrices& matrices) { return Elimination(matrices, problem.spaces()); });
+        t, [&](const ElementMatrices& matrices) { return Elimination(matrices, discrete.spaces()); });
     const LocalFields local =
-        elimination.recover(traces.values(t, x), problem.load.col(t), [&](const LocalVector& stress) {
-          return problem.element.strain(problem.mesh, t, elimination.compliance(), stress);
+        elimination.recover(traces.values(t, x), discrete.load.col(t), [&](const LocalVector& stress) {
+          return discrete.element.strain(discrete.mesh, t, elimination.compliance(), stress);
         });
     all.stress.col(t) = local.stress;
     all.displacement.col(t) = local.displacement;
     subtract_forces(traces, t, local.force, all.imbalance);
     const double flux = local.force.head(traces.traces_per_triangle()).lpNorm<Eigen::Infinity>();
-    const double length = std::sqrt(AffineMap(problem.mesh.corners(t)).determinant);
+    const double length = std::sqrt(AffineMap(discrete.mesh.corners(t)).determinant);
     all.largest_flux = std::max(all.largest_flux, flux);
     all.largest_moment = std::max(all.largest_moment, flux * length);
   }
@@ -52,18 +52,19 @@ bool Recovered::is_balanced(const TraceSpace& traces) const {
   return forces <= rounding * largest_flux && moments <= rounding * largest_moment;
 }
 
-void change(const Discretization& problem, const Eigen::VectorXd& dx, Recovered& fields, Progress& progress) {
-  fields.imbalance = problem.coupling_load;
-  PerShape<Elimination> eliminations(problem);
-  for (int t = 0; t < problem.triangles(); ++t) {
+void change(const Discretization& discrete, const Eigen::VectorXd& dx, Recovered& fields,
+            Progress& progress) {
+  fields.imbalance = discrete.coupling_load;
+  PerShape<Elimination> eliminations(discrete);
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     const Elimination& elimination = eliminations(
-        t, [&](const ElementMatrices& matrices) { return Elimination(matrices, problem.spaces()); });
-    const LocalVector lack = -problem.load.col(t) - problem.spaces().divergence * fields.stress.col(t);
-    const LocalFields local = elimination.respond(problem.traces.changes(t, dx), lack);
+        t, [&](const ElementMatrices& matrices) { return Elimination(matrices, discrete.spaces()); });
+    const LocalVector lack = -discrete.load.col(t) - discrete.spaces().divergence * fields.stress.col(t);
+    const LocalFields local = elimination.respond(discrete.traces.changes(t, dx), lack);
     fields.stress.col(t) += local.stress;
     fields.displacement.col(t) += local.displacement;
-    subtract_forces(problem.traces, t, elimination.force(fields.stress.col(t)), fields.imbalance);
+    subtract_forces(discrete.traces, t, elimination.force(fields.stress.col(t)), fields.imbalance);
   }
 }
 

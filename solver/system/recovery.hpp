@@ -20,12 +20,12 @@ struct Recovered {
 };
 
 /// Eliminates triangle by triangle once more and goes back.
-Recovered recover(const Discretization& problem, const Eigen::VectorXd& x, Progress& progress);
+Recovered recover(const Discretization& discrete, const Eigen::VectorXd& x, Progress& progress);
 
 /// Adds to stress and displacement what follows from a change dx of the coupling unknowns, and balances anew.
 ///
 /// The mixed system is well posed uniformly in ν, the elimination of σ is not: recovered from x + dx, the
 /// stress would carry the rounding of x times the bulk modulus.
-void change(const Discretization& problem, const Eigen::VectorXd& dx, Recovered& fields, Progress& progress);
+void change(const Discretization& discrete, const Eigen::VectorXd& dx, Recovered& fields, Progress& progress);
 
 }  // namespace signorini

@@ -70,7 +70,7 @@ TEST(ParseRequest, HasTheDefaultsOfTheContract) {
   EXPECT_EQ(std::get<Rectangle>(request.problem.domain).size, Vector(1, 1));
   EXPECT_EQ(request.problem.boundary.size(), 1u);
   EXPECT_EQ(request.problem.mesh.pattern, Pattern::right);
-  EXPECT_TRUE(std::holds_alternative<AcceleratedUzawa>(request.settings.method));
+  EXPECT_TRUE(std::holds_alternative<Mprgp>(request.settings.method));
   EXPECT_FALSE(request.settings.time_limit);
 }
 
@@ -110,9 +110,9 @@ TEST(ParseRequest, AllNamesThePartsThatAreNotNamed) {
 TEST(ParseRequest, NumbersDecideTheFormOfUzawa) {
   const auto method = [](const json& solver) { return parse_with("/solver", solver).settings.method; };
   EXPECT_TRUE(std::holds_alternative<PaperUzawa>(method({{"rho", 0.1}, {"augmentation", 0}})));
-  EXPECT_TRUE(std::holds_alternative<AcceleratedUzawa>(method({{"rho", "auto"}, {"augmentation", "auto"}})));
-  EXPECT_TRUE(std::holds_alternative<AcceleratedUzawa>(method({{"method", "uzawa"}, {"rho", "auto"}})));
-  const auto accelerated = std::get<AcceleratedUzawa>(method({{"tolerance", 1e-12}, {"max_iterations", 7}}));
+  EXPECT_TRUE(std::holds_alternative<Mprgp>(method({{"rho", "auto"}, {"augmentation", "auto"}})));
+  EXPECT_TRUE(std::holds_alternative<Mprgp>(method({{"method", "uzawa"}, {"rho", "auto"}})));
+  const auto accelerated = std::get<Mprgp>(method({{"tolerance", 1e-12}, {"max_iterations", 7}}));
   EXPECT_EQ(accelerated.tolerance, 1e-12);
   EXPECT_EQ(accelerated.max_iterations, 7);
   EXPECT_EQ(std::get<ActiveSet>(method({{"method", "active_set"}, {"max_iterations", 9}})).max_iterations, 9);

@@ -132,7 +132,7 @@ TEST(Adapt, SolvesThePapersProblemToOneThousandth) {
 
 TEST(Adapt, IsTheSolutionOfItsLastMesh) {
   for (const Scheme scheme : schemes)
-    for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{1e-12}}}) {
+    for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{1e-12}}}) {
       const Problem problem = problems::paper(scheme, 4);
       const Solution grown = solve(adaptive(problem, 0.05, 20000), by(method));
       const Solution fresh = solve(on_mesh(problem, grown.mesh), by(method));

@@ -11,7 +11,7 @@
 #include <Eigen/SVD>
 
 #include "certify/data/linear_remainder.hpp"
-#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/johnson_mercier.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 #include "fem/cubature.hpp"
 #include "mesh/rectangle.hpp"
@@ -32,14 +32,14 @@ double norm_of_element(int components) {
       rows.middleRows<2>(2 * q) =
           std::sqrt(rule.weights[q]) * QuadraticBalance::reference_values(rule.points[q]);
   } else {
-    const std::vector<MacroElement::Place> places = MacroElement::places(rule_of_degree(8));
-    rows.resize(3 * static_cast<Eigen::Index>(places.size()), MacroElement::kData);
+    const std::vector<JohnsonMercier::Place> places = JohnsonMercier::places(rule_of_degree(8));
+    rows.resize(3 * static_cast<Eigen::Index>(places.size()), JohnsonMercier::kData);
     for (std::size_t q = 0; q < places.size(); ++q)
-      for (int k = 0; k < MacroElement::kData; ++k)
+      for (int k = 0; k < JohnsonMercier::kData; ++k)
         rows.block<3, 1>(3 * static_cast<Eigen::Index>(q), k) =
             std::sqrt(places[q].weight) *
             Eigen::Vector3d(1, 1, std::sqrt(2.))
-                .cwiseProduct(MacroElement::stress(places[q], macro_element().from_data.col(k)));
+                .cwiseProduct(JohnsonMercier::stress(places[q], johnson_mercier().from_data.col(k)));
   }
   return Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues()[0];
 }

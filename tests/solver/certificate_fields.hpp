@@ -6,7 +6,7 @@
 
 #include "certify/admissible_pair.hpp"
 #include "certify/displacement/relaxation.hpp"
-#include "certify/membrane/least_potential.hpp"
+#include "certify/membrane/stream_function_minimization.hpp"
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
 #include "problems/membrane.hpp"
@@ -86,8 +86,8 @@ class CertificateFields {
     pair_.emplace(AdmissiblePair{{discretization_, solution_, x, progress_},
                                  {discretization_, solution_.stress, clearance}});
     pair_->v.relax(work_of_loads(discretization_), kStepsFromAverage, progress_);
-    minimize_potential(discretization_, pair_->v, clearance, pair_->pressure, progress_);
-    pair_->of_balance = potential_of_balance(discretization_, progress_);
+    minimize_stream_function(discretization_, pair_->v, clearance, pair_->pressure, progress_);
+    pair_->of_balance = stream_function_of_balance(discretization_, progress_);
   }
 
   const Discretization& discretization() const { return discretization_; }
@@ -118,7 +118,7 @@ class CertificateFields {
   Vector admissible_stress(int t, const Point& reference) const {
     const AffineMap map(mesh().corners(t));
     const Vector rise = map.jacobian.inverse().transpose() *
-                        (quadratic_gradients(reference) * pair_->potential_on(mesh(), t).transpose());
+                        (quadratic_gradients(reference) * pair_->stream_function_on(mesh(), t).transpose());
     return stress(t, reference) + Vector(rise.y(), -rise.x());
   }
 

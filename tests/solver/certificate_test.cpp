@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 
 #include "certificate_fields.hpp"
-#include "certify/membrane/balance_potential.hpp"
+#include "certify/membrane/balance_stream_function.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/rectangle.hpp"
@@ -219,8 +219,8 @@ TEST(Certificate, OfRandomProblemsOnFinerMeshesIsWithinATenthOfTheirErrors) {
   }
 }
 
-/// Its potential leaves less of the balance, and changes neither traction nor pressure.
-TEST(PotentialOfBalance, SpreadsWhatATriangleHasToTakeBack) {
+/// Its stream function leaves less of the balance, and changes neither traction nor pressure.
+TEST(StreamFunctionOfBalance, SpreadsWhatATriangleHasToTakeBack) {
   for (const Scheme scheme : schemes) {
     Problem problem = problems::random(46);
     problem.scheme = scheme;
@@ -229,7 +229,7 @@ TEST(PotentialOfBalance, SpreadsWhatATriangleHasToTakeBack) {
     const Discretization discretization(problem, mesh);
     Observer observer;
     Progress progress(observer, std::nullopt);
-    const QuadraticValues potential = potential_of_balance(discretization, progress).value();
+    const QuadraticValues stream_function = stream_function_of_balance(discretization, progress).value();
     const QuadraticBalance balance(discretization);
     double before = 0, after = 0;
     for (int t = 0; t < discretization.triangles(); ++t) {
@@ -243,7 +243,7 @@ TEST(PotentialOfBalance, SpreadsWhatATriangleHasToTakeBack) {
         Vector tau = own.col(q);
         const Eigen::Matrix2d compliance = compliance_at(problem.material, map(x));
         before += weight * tau.dot(compliance * tau);
-        tau += curl(map.jacobian.inverse(), potential.on(mesh, t) * quadratic_gradients(x).transpose());
+        tau += curl(map.jacobian.inverse(), stream_function.on(mesh, t) * quadratic_gradients(x).transpose());
         after += weight * tau.dot(compliance * tau);
       }
     }
@@ -251,8 +251,8 @@ TEST(PotentialOfBalance, SpreadsWhatATriangleHasToTakeBack) {
     for (const BoundaryPart& part : mesh.boundary) {
       if (condition_on<Fixed>(problem, part.name)) continue;
       for (const int edge : part.edges) {
-        EXPECT_EQ(potential.middles[edge], 0);
-        for (const int point : mesh.edges[edge]) EXPECT_EQ(potential.points[point], 0);
+        EXPECT_EQ(stream_function.middles[edge], 0);
+        for (const int point : mesh.edges[edge]) EXPECT_EQ(stream_function.points[point], 0);
       }
     }
   }

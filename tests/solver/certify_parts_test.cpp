@@ -5,9 +5,9 @@
 #include <Eigen/LU>
 
 #include "certify/displacement/lift.hpp"
+#include "certify/elasticity/airy_minimization.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
-#include "certify/elasticity/least_airy.hpp"
-#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/johnson_mercier.hpp"
 #include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/local_fields.hpp"
 #include "fem/lagrange.hpp"
@@ -203,10 +203,10 @@ Vector traction(const Eigen::Vector3d& stress, const Vector& n) {
   return {stress[0] * n.x() + stress[2] * n.y(), stress[2] * n.x() + stress[1] * n.y()};
 }
 
-using MacroData = Eigen::Matrix<double, MacroElement::kData, 1>;
+using JohnsonMercierData = Eigen::Matrix<double, JohnsonMercier::kData, 1>;
 
 /// The work of tractions and divergence on w = (1, 0) and w = (0, 1) at a node: ∮ t·w − ∫ div·w.
-Vector work_of(const MacroData& data, int node) {
+Vector work_of(const JohnsonMercierData& data, int node) {
   const std::array<Point, 3> corners{Point(0, 0), Point(1, 0), Point(0, 1)};
   Vector work = Vector::Zero();
   for (int e = 0; e < 3 && node < 6; ++e)
@@ -216,35 +216,35 @@ Vector work_of(const MacroData& data, int node) {
       work += edge_rule().weights[q] * quadratic_basis(x)[node] *
               (data.segment<6>(6 * e).reshaped(2, 3) * edge_basis(2, s));
     }
-  for (const MacroElement::Place& place : MacroElement::places(rule_of_degree(6)))
+  for (const JohnsonMercier::Place& place : JohnsonMercier::places(rule_of_degree(6)))
     work -= place.weight * place.displacement_basis[node] *
             (data.tail<12>().reshaped(2, 6) * quadratic_basis(place.point));
   return work;
 }
 
 /// The forces and the moment of the data.
-Eigen::Vector3d resultants(const MacroData& data) {
+Eigen::Vector3d resultants(const JohnsonMercierData& data) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int node = 0; node < MacroElement::kNodes; ++node) {
+  for (int node = 0; node < JohnsonMercier::kNodes; ++node) {
     const Vector work = work_of(data, node);
-    const Point x = MacroElement::node(node);
+    const Point x = JohnsonMercier::node(node);
     sum += Eigen::Vector3d(work.x(), work.y(), x.x() * work.y() - x.y() * work.x());
   }
   return sum;
 }
 
 /// Any tractions and divergence that balance.
-MacroData balanced_data() {
+JohnsonMercierData balanced_data() {
   std::mt19937 generator(7);
   std::uniform_real_distribution<double> unit(-1, 1);
-  MacroData data;
+  JohnsonMercierData data;
   for (double& entry : data) entry = unit(generator);
-  Eigen::Matrix<double, MacroElement::kData, 3> rigid = decltype(rigid)::Zero();
+  Eigen::Matrix<double, JohnsonMercier::kData, 3> rigid = decltype(rigid)::Zero();
   Eigen::Matrix3d of_rigid;
   for (int k = 0; k < 3; ++k) {
     for (int z = 0; z < 6; ++z) {
-      const Point x = MacroElement::node(z);
-      rigid.col(k).segment<2>(MacroElement::kTractions + 2 * z) =
+      const Point x = JohnsonMercier::node(z);
+      rigid.col(k).segment<2>(JohnsonMercier::kTractions + 2 * z) =
           k < 2 ? Vector(k == 0, k == 1) : Vector(-x.y(), x.x());
     }
     of_rigid.col(k) = resultants(rigid.col(k));
@@ -253,20 +253,20 @@ MacroData balanced_data() {
 }
 
 /// By parts, a stress does the work of its tractions and its divergence on every displacement.
-TEST(MacroElement, HasTheTractionsAndTheDivergenceThatItIsGiven) {
-  const MacroData data = balanced_data();
-  const MacroElement& element = macro_element();
+TEST(JohnsonMercier, HasTheTractionsAndTheDivergenceThatItIsGiven) {
+  const JohnsonMercierData data = balanced_data();
+  const JohnsonMercier& element = johnson_mercier();
   const auto work_of_stress = [](const auto& coefficients, int node) {
     Vector work = Vector::Zero();
-    for (const MacroElement::Place& place : MacroElement::places(rule_of_degree(6)))
+    for (const JohnsonMercier::Place& place : JohnsonMercier::places(rule_of_degree(6)))
       work += place.weight *
-              traction(MacroElement::stress(place, coefficients), place.displacement_gradients.col(node));
+              traction(JohnsonMercier::stress(place, coefficients), place.displacement_gradients.col(node));
     return work;
   };
-  const Eigen::Matrix<double, MacroElement::kStresses, 1> stress = element.from_data * data;
-  for (int node = 0; node < MacroElement::kNodes; ++node) {
+  const Eigen::Matrix<double, JohnsonMercier::kStresses, 1> stress = element.from_data * data;
+  for (int node = 0; node < JohnsonMercier::kNodes; ++node) {
     EXPECT_LE((work_of_stress(stress, node) - work_of(data, node)).norm(), 1e-12);
-    for (int k = 0; k < MacroElement::kFree; ++k)
+    for (int k = 0; k < JohnsonMercier::kFree; ++k)
       EXPECT_LE(work_of_stress(element.free.col(k), node).norm(), 1e-12);
   }
 }

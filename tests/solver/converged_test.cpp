@@ -18,7 +18,7 @@ constexpr double kSame = 1 + 1e-4, kRounding = 1e-12;
 
 void expect_met(const Problem& problem, const std::string& which) {
   for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
-    const Summary summary = solve(problem, {AcceleratedUzawa{tolerance}, {}}).summary;
+    const Summary summary = solve(problem, {Mprgp{tolerance}, {}}).summary;
     EXPECT_EQ(summary.outcome, Outcome::converged) << which << ", " << tolerance;
     EXPECT_LE(largest_contact_residual(summary.residuals), kSame * tolerance + kRounding)
         << which << ", " << tolerance;
@@ -81,7 +81,7 @@ TEST(Converged, IsWhatMovesWithoutStress) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
     for (const double length : {1e-9, 1., 1e9})
       for (const double displacement : {1e-9, 1., 1e9})
-        for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
+        for (const Method& method : {Method(Mprgp{}), Method(ActiveSet{})}) {
           Problem problem;
           problem.domain = Rectangle{{0, 0}, {length, length}};
           problem.mesh.fineness = Divisions{6, 5};
@@ -108,7 +108,7 @@ TEST(Converged, IsWhatMovesWithoutStressOnFineMeshes) {
       problem.mesh.fineness = divisions;
       problem.body = {};
       problem.boundary = {{"left", Fixed{0.7}}, {"bottom", Contact{1}}};
-      const Summary summary = solve(problem, {AcceleratedUzawa{}, {}}).summary;
+      const Summary summary = solve(problem, {Mprgp{}, {}}).summary;
       EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
     }
 }
@@ -121,7 +121,7 @@ TEST(Converged, IsABodyAtRestUnderARidgeThatTheMeshDoesNotSee) {
   problem.boundary = {{"left", Fixed{}},
                       {"right", Fixed{}},
                       {"bottom", Contact{problems::formula("0.1 - 0.3*exp(-1e4*(x-0.4123)^2)")}}};
-  for (const Method& method : {Method(AcceleratedUzawa{}), Method(ActiveSet{})}) {
+  for (const Method& method : {Method(Mprgp{}), Method(ActiveSet{})}) {
     const Summary summary = solve(problem, {method, {}}).summary;
     EXPECT_EQ(summary.outcome, Outcome::converged) << summary.advice;
     EXPECT_GT(summary.error_bound->energy_upper, 0);

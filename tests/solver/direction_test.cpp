@@ -103,7 +103,7 @@ TEST(Direction, TheMethodsAgree) {
   for (const Scheme scheme : kSchemes) {
     const Problem problem = Slanted{}.problem(scheme, Vector(0.2, -1), falling_away);
     const Solution exact = solve(problem, {ActiveSet{}, {}});
-    const Solution uzawa = solve(problem, {AcceleratedUzawa{1e-12, 100000}, {}});
+    const Solution uzawa = solve(problem, {Mprgp{1e-12, 100000}, {}});
     EXPECT_LT((uzawa.stress - exact.stress).cwiseAbs().maxCoeff(), 1e-8);
   }
 }

@@ -31,7 +31,7 @@ void expect_uniform_stress(const Solution& solution, const Eigen::Vector3d& stre
 TEST_P(Patch, PressedOnAFoundation) {
   const auto [scheme, pattern, poisson] = GetParam();
   const double p = 0.7;
-  for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{1e-13, 10000}}}) {
+  for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{1e-13, 10000}}}) {
     const Solution solution = solve(problems::pressed_block(scheme, pattern, poisson, p), {method, {}});
     ASSERT_EQ(solution.summary.outcome, Outcome::converged);
     expect_uniform_stress(solution, {0, -p, 0}, p, rounding);

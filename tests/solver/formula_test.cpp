@@ -43,6 +43,7 @@ const char* const kFormulas[] = {
     "sin(x-0.3)/(x-0.3)",
     "log(x-0.2)",
     "sin(97*x)",
+    "(x-y)^9+(x-0.5)^40",
 };
 
 class RandomTriangles {
@@ -144,6 +145,16 @@ TEST(Formula, OfAPolynomialIsKnownExactly) {
   const TaylorModel model = parse_formula("(1 + x - 2*y)^2 * (3 - x*y) / 4", false).evaluate(enclosure);
   EXPECT_EQ(model.remainder(), 0);
   EXPECT_EQ(model.degree(), 4);
+}
+
+/// No polynomial that leaves out more than the power itself is of use.
+TEST(Formula, OfAHighPowerIsSmallBesideItsZero) {
+  constexpr double length = 0.125;
+  for (const int exponent : {9, 10, 20, 41}) {
+    Enclosure<TaylorModel> enclosure = on_triangle({Point(0, 0), Point(length, 0), Point(0, length)});
+    const TaylorModel model = parse_formula("y^" + std::to_string(exponent), false).evaluate(enclosure);
+    EXPECT_LE(model.remainder(), std::pow(length, exponent)) << exponent;
+  }
 }
 
 /// Against the same number, written without cancellation.

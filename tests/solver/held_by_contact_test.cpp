@@ -22,7 +22,7 @@ double total_load(const Problem& problem) {
 
 TEST(HeldByContactAlone, TheForceIsTheWholeLoad) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
-    for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{1e-12, 100000}}}) {
+    for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{1e-12, 100000}}}) {
       const Problem problem = resting(scheme, -3, 0.2);
       const Solution solution = solve(problem, {method, {}});
       ASSERT_EQ(solution.summary.outcome, Outcome::converged);
@@ -57,7 +57,7 @@ TEST(HeldByContactAlone, UniformLoadOnOneSideIsKnown) {
 
 void expect_diagnosis(const Problem& problem, const std::string& word) {
   for (const Method& method :
-       {Method{ActiveSet{}}, Method{AcceleratedUzawa{}}, Method{PaperUzawa{0.1, 1, 0, 1e-5, 100}}})
+       {Method{ActiveSet{}}, Method{Mprgp{}}, Method{PaperUzawa{0.1, 1, 0, 1e-5, 100}}})
     try {
       solve(problem, {method, {}});
       ADD_FAILURE() << "solved what nothing holds";

@@ -10,7 +10,7 @@ namespace signorini {
 /// twelve dense steps from nothing and with residuals at rounding. Returns what the active set found.
 inline Solution expect_methods_agree(const Problem& problem) {
   const Solution exact = solve(problem, {ActiveSet{}, {}});
-  const Solution uzawa = solve(problem, {AcceleratedUzawa{1e-12, 100000}, {}});
+  const Solution uzawa = solve(problem, {Mprgp{1e-12, 100000}, {}});
   EXPECT_EQ(exact.summary.outcome, Outcome::converged);
   EXPECT_EQ(uzawa.summary.outcome, Outcome::converged);
   EXPECT_LE(exact.summary.iterations, 12);

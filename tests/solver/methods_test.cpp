@@ -3,8 +3,8 @@
 
 #include <thread>
 
-#include "contact/accelerated_uzawa.hpp"
 #include "contact/active_set.hpp"
+#include "contact/mprgp.hpp"
 #include "norms.hpp"
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
@@ -53,7 +53,7 @@ TEST(ActiveSetMethod, ClosesWhatIsViolatedALittle) {
 
 /// S = AᵀA of any sign pattern; with fewer rows than columns it is singular, and c = S x + (pressures where
 /// x = 0) has the solution x nevertheless.
-TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
+TEST(MprgpMethod, FindsTheKnownSolutionFromEveryStart) {
   std::mt19937 engine(1);
   std::normal_distribution<double> normal;
   const auto random = [&](int rows, int columns) {
@@ -71,7 +71,7 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
         Progress progress(observer, std::nullopt);
         Eigen::VectorXd start;
         if (started) start = random(n, 1).cwiseAbs();
-        const ContactResult result = accelerated_uzawa(
+        const ContactResult result = mprgp(
             contact, {1e-12, 10000}, progress,
             [](const Eigen::VectorXd&) -> BodyState {
               return {0, {}};
@@ -86,10 +86,10 @@ TEST(AcceleratedUzawaMethod, FindsTheKnownSolutionFromEveryStart) {
   }
 }
 
-TEST(AcceleratedUzawaMethod, ItsCountGrowsMoreSlowlyThanTheRootOfTheDivisions) {
+TEST(MprgpMethod, ItsCountGrowsMoreSlowlyThanTheRootOfTheDivisions) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     const auto count = [&](int n) {
-      return solve(problems::paper(scheme, n), {AcceleratedUzawa{1e-8}, {}}).summary.iterations;
+      return solve(problems::paper(scheme, n), {Mprgp{1e-8}, {}}).summary.iterations;
     };
     const int coarse = count(16), fine = count(128);
     EXPECT_LT(fine, coarse * std::sqrt(128. / 16)) << coarse;
@@ -102,7 +102,7 @@ class RandomProblems : public testing::TestWithParam<unsigned> {};
 TEST_P(RandomProblems, UzawaAndActiveSetAgree) {
   const Problem problem = problems::random(GetParam());
   const Solution exact = solve(problem, {ActiveSet{}, {}});
-  const Solution uzawa = solve(problem, {AcceleratedUzawa{1e-12, 100000}, {}});
+  const Solution uzawa = solve(problem, {Mprgp{1e-12, 100000}, {}});
   ASSERT_EQ(exact.summary.outcome, Outcome::converged);
   ASSERT_EQ(uzawa.summary.outcome, Outcome::converged);
   expect_same_fields(uzawa, exact, 1e-8);
@@ -166,7 +166,7 @@ TEST(PaperUzawaMethod, OverflowAtOnceIsAnErrorInWords) {
 }
 
 TEST(Limits, IterationLimitKeepsTheLastIterate) {
-  for (const Method& method : {Method{AcceleratedUzawa{1e-12, 3}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 3}}}) {
+  for (const Method& method : {Method{Mprgp{1e-12, 3}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 3}}}) {
     const Solution solution = solve(problems::paper(Scheme::conforming, 8), {method, {}});
     EXPECT_EQ(solution.summary.outcome, Outcome::iteration_limit);
     EXPECT_EQ(solution.history.size(), 3u);
@@ -220,7 +220,7 @@ TEST(Limits, TimeLimitWithinAnIterationKeepsTheOneBefore) {
   expect_iterate(active_set(contact, {}, exact), exact);
   Progress uzawa(dawdler, 1.);
   const StateOfBody unknown = [](const Eigen::VectorXd&) -> BodyState { return {0, {}}; };
-  expect_iterate(accelerated_uzawa(contact, {1e-12, 10000}, uzawa, unknown), uzawa);
+  expect_iterate(mprgp(contact, {1e-12, 10000}, uzawa, unknown), uzawa);
 }
 
 /// Lets the time run out between the iterate and its bound.
@@ -256,7 +256,7 @@ class Stopper : public Observer {
 
 TEST(Observers, CanStopEveryMethod) {
   for (const Method& method :
-       {Method{AcceleratedUzawa{}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 1000}}, Method{ActiveSet{}}}) {
+       {Method{Mprgp{}}, Method{PaperUzawa{0.05, 1, 1, 1e-5, 1000}}, Method{ActiveSet{}}}) {
     Stopper stopper(1);
     EXPECT_THROW(solve(problems::paper(Scheme::conforming, 12), {method, {}}, stopper), Cancelled);
   }
@@ -277,7 +277,7 @@ Problem scaled(double a, double b, double c) {
 }
 
 TEST(Units, ChangeNeitherCountsNorTheActiveSet) {
-  for (const Method& method : {Method{AcceleratedUzawa{}}, Method{ActiveSet{}}}) {
+  for (const Method& method : {Method{Mprgp{}}, Method{ActiveSet{}}}) {
     const Solution reference = solve(scaled(1, 1, 1), {method, {}});
     for (const double a : {1e-9, 1., 1e9})
       for (const double b : {1e-9, 1., 1e9})

@@ -84,7 +84,7 @@ class OnPatch {
   }
   Vector curl_of(const AdmissiblePair& pair, int t, const Point& x) const {
     return curl(AffineMap(mesh_.corners(t)).jacobian.inverse(),
-                pair.pressure.potential_on(mesh_, t) * quadratic_gradients(x).transpose());
+                pair.pressure.stream_function_on(mesh_, t) * quadratic_gradients(x).transpose());
   }
   Vector quadratic_slope(const AdmissiblePair& pair, int t, const Point& x) const {
     return gradient<1>(AffineMap(mesh_.corners(t)).jacobian.inverse(),
@@ -243,8 +243,8 @@ TEST_P(PatchPairsOfTheEdge, FitTheirSurroundings) {
   expect_to_fit(whole_, all_);
 }
 
-/// A load that varies besides, so that σ* has the potential of its balance; and contact that stays closed up
-/// to a corner.
+/// A load that varies besides, so that σ* has the stream function of its balance; and contact that stays
+/// closed up to a corner.
 TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
   Problem problem = problems::random(7);
   problem.scheme = Scheme::conforming;

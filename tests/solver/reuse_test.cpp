@@ -45,8 +45,8 @@ void expect_same(const Solution& found, const Solution& expected) {
 
 TEST(Reuse, GivesTheAnswersOfASolveFromScratch) {
   for (const Problem& family : problems::families())
-    for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{}}}) {
-      if (sanitized && std::holds_alternative<AcceleratedUzawa>(method)) continue;
+    for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{}}}) {
+      if (sanitized && std::holds_alternative<Mprgp>(method)) continue;
       problems::Shelf shelf;
       for (unsigned seed = 0; seed < (sanitized ? 2 : 4); ++seed) {
         Problem problem = problems::with_other_data(family, seed);
@@ -67,7 +67,7 @@ TEST(Reuse, TheMethodDoesNotMatter) {
   Problem problem = problems::paper(Scheme::nonconforming, 8);
   problem.operator_key = "paper";
   EXPECT_FALSE(solve_with(shelf, problem, {ActiveSet{}, {}}).summary.reused);
-  EXPECT_TRUE(solve_with(shelf, problem, {AcceleratedUzawa{1e-3, 20}, {}}).summary.reused);
+  EXPECT_TRUE(solve_with(shelf, problem, {Mprgp{1e-3, 20}, {}}).summary.reused);
   EXPECT_FALSE(solve_with(shelf, problem, {PaperUzawa{0.1, 1}, {}}).summary.reused);
 }
 

@@ -6,8 +6,8 @@
 #include <Eigen/Cholesky>
 
 #include "certify/displacement/star_relaxation.hpp"
-#include "certify/elasticity/macro_data.hpp"
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/triangle_sums.hpp"
 #include "mesh/rectangle.hpp"
@@ -99,14 +99,14 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
   double sum = 0;
   for (int t = 0; t < solved.discretization.triangles(); ++t) {
     const AffineMap map(solved.solution.mesh.corners(t));
-    const MacroRule& rule = macro_rule(solved.discretization.spaces(), 10);
+    const JohnsonMercierRule& rule = johnson_mercier_rule(solved.discretization.spaces(), 10);
     const std::vector<SymmetricLaw> laws = laws_at(solved.discretization, rule, map, law);
-    const MacroValues<1> values(rule, map,
-                                {macro_data(solved.discretization, tractions, t, map),
-                                 solved.solution.stress.col(t),
-                                 Eigen::Matrix<double, 12, 1>::Zero(),
-                                 {}},
-                                laws);
+    const JohnsonMercierOperators<1> values(rule, map,
+                                            {johnson_mercier_data(solved.discretization, tractions, t, map),
+                                             solved.solution.stress.col(t),
+                                             Eigen::Matrix<double, 12, 1>::Zero(),
+                                             {}},
+                                            laws);
     sum += values.correction.squaredNorm();
   }
   return sum;

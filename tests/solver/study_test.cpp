@@ -214,7 +214,7 @@ TEST(Study, ARunThatFailsDoesNotEndTheOthers) {
   const Study study{{Scheme::nonconforming}, squares({{4, 4}, {32, 32}, {4, 4}}), {}};
   // Enough for the coarse mesh only.
   const std::vector<StudyRow> rows =
-      run(problems::paper(Scheme::conforming, 4), study, {AcceleratedUzawa{1e-8, 12}, {}});
+      run(problems::paper(Scheme::conforming, 4), study, {Mprgp{1e-8, 12}, {}});
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].error, "");
   EXPECT_EQ(rows[1].error.find("/study/divisions/1: "), 0u) << rows[1].error;

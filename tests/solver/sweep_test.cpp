@@ -163,8 +163,8 @@ TEST(Sweep, EveryMethodMaySweep) {
     single.push_back(problem);
     sweep.push_back(data_of(problem, "loads"));
   }
-  for (const Method& method : {Method{ActiveSet{}}, Method{AcceleratedUzawa{1e-12, 100000}},
-                               Method{PaperUzawa{0.1, 1, 0, 1e-13, 100000}}}) {
+  for (const Method& method :
+       {Method{ActiveSet{}}, Method{Mprgp{1e-12, 100000}}, Method{PaperUzawa{0.1, 1, 0, 1e-13, 100000}}}) {
     const Solution solution = solve_sweep(family, sweep, {method, {}});
     for (std::size_t i = 0; i < single.size(); ++i)
       expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-7);

@@ -9,8 +9,8 @@
 #include <Eigen/LU>
 
 #include "certificate_fields.hpp"
-#include "certify/elasticity/macro_data.hpp"
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 #include "certify/triangle_sums.hpp"
 #include "fem/cubature.hpp"
@@ -166,7 +166,7 @@ TEST(MembraneSums, AreThoseOfTheFields) {
       EXPECT_NEAR(said.energy, seen.energy, 1e-9 * seen.strain);
       EXPECT_LE(said.slack + said.energy_slack, 1e-9 * seen.stress);
       is_corrected |= seen.correction > 1e-3 * seen.stress;
-      is_curled |= !made.pair().potential_on(made.mesh(), t).isZero(0);
+      is_curled |= !made.pair().stream_function_on(made.mesh(), t).isZero(0);
     }
     EXPECT_TRUE(is_corrected && is_curled);
   }
@@ -370,13 +370,13 @@ class ElasticFields {
 
   TriangleSums seen(int t, const std::function<double(const Point&)>& load,
                     const RestOfLift* rest = nullptr) const {
-    const MacroRule& rule = macro_rule(made_.discretization.spaces(), 30);
+    const JohnsonMercierRule& rule = johnson_mercier_rule(made_.discretization.spaces(), 30);
     const AffineMap map(mesh().corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
-    MacroValues<1>::Given given{macro_data(made_.discretization, tractions_, t, map),
-                                made_.solution.stress.col(t),
-                                v_.on<2>(t).reshaped(),
-                                {}};
+    JohnsonMercierOperators<1>::Given given{johnson_mercier_data(made_.discretization, tractions_, t, map),
+                                            made_.solution.stress.col(t),
+                                            v_.on<2>(t).reshaped(),
+                                            {}};
     std::vector<Eigen::Vector2d> values;
     for (int q = 0; q < rule.size(); ++q) {
       const Point& x = rule.places[q].point;
@@ -388,16 +388,16 @@ class ElasticFields {
     }
     LawField<2> law(made_.problem.material);
     const std::vector<SymmetricLaw> laws = laws_at(made_.discretization, rule, map, law);
-    const MacroValues<1> fields(rule, map, given, laws);
+    const JohnsonMercierOperators<1> fields(rule, map, given, laws);
     TriangleSums sums;
     for (int q = 0; q < rule.size(); ++q) {
-      const MacroElement::Place& place = rule.places[q];
+      const JohnsonMercier::Place& place = rule.places[q];
       const double weight = place.weight * map.determinant;
       const auto& own = laws[laws.size() == 1 ? 0 : q];
       // In the norm of E, as the rows of the fields are.
       Eigen::Vector3d z = Eigen::Vector3d::Zero();
-      Eigen::Vector2d value = values[q] + fields.inner.reshaped(2, MacroRule::kInner) *
-                                              place.displacement_basis.tail<MacroRule::kInner>();
+      Eigen::Vector2d value = values[q] + fields.inner.reshaped(2, JohnsonMercierRule::kInner) *
+                                              place.displacement_basis.tail<JohnsonMercierRule::kInner>();
       if (rest) {
         const Eigen::Matrix<double, Eigen::Dynamic, 2> slope = rest->gradient(place.point);
         value += rest->value(place.point);

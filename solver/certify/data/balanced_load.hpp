@@ -7,22 +7,22 @@ namespace signorini {
 
 /// Π₂f, the load that does the work on what is quadratic.
 template <int D>
-Quadratic<D> quadratic_load(const Discretization& problem, int t) {
-  return problem.body[t].projection;
+Quadratic<D> quadratic_load(const Discretization& discrete, int t) {
+  return discrete.body[t].projection;
 }
 
 /// Πf, the load that σ* is in equilibrium with.
 template <int D>
-Quadratic<D> balanced_load(const Discretization& problem, int t) {
-  return problem.body[t].balanced;
+Quadratic<D> balanced_load(const Discretization& discrete, int t) {
+  return discrete.body[t].balanced;
 }
 
 /// Column z: at corner z the projection of Πf onto P0 or P1 that σ_h balances.
 template <int D>
-Eigen::Matrix<double, D, 3> discrete_load(const Discretization& problem, int t) {
-  const double area = AffineMap(problem.mesh.corners(t)).determinant / 2;
-  if (problem.spaces().order == 0) return (problem.load.col(t) / area).replicate(1, 3);
-  const Eigen::Matrix<double, D, 3> moments = problem.load.col(t).reshaped(D, 3);
+Eigen::Matrix<double, D, 3> discrete_load(const Discretization& discrete, int t) {
+  const double area = AffineMap(discrete.mesh.corners(t)).determinant / 2;
+  if (discrete.spaces().order == 0) return (discrete.load.col(t) / area).replicate(1, 3);
+  const Eigen::Matrix<double, D, 3> moments = discrete.load.col(t).reshaped(D, 3);
   // The inverse of the mass matrix area/12 (1 + δ_ij) is 12/area (δ_ij − 1/4).
   return 12 / area * (moments.colwise() - moments.rowwise().sum() / 4);
 }

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 
 namespace signorini {
@@ -30,11 +30,11 @@ double norm_of_membrane_element() {
 
 double norm_of_macro_element() {
   static const double norm = [] {
-    const std::vector<MacroElement::Place> places = MacroElement::places(rule_of_degree(6));
-    Eigen::MatrixXd rows(3 * places.size(), MacroElement::kData);
+    const std::vector<JohnsonMercier::Place> places = JohnsonMercier::places(rule_of_degree(6));
+    Eigen::MatrixXd rows(3 * places.size(), JohnsonMercier::kData);
     for (std::size_t q = 0; q < places.size(); ++q)
-      for (int k = 0; k < MacroElement::kData; ++k) {
-        Eigen::Vector3d stress = MacroElement::stress(places[q], macro_element().from_data.col(k));
+      for (int k = 0; k < JohnsonMercier::kData; ++k) {
+        Eigen::Vector3d stress = JohnsonMercier::stress(places[q], johnson_mercier().from_data.col(k));
         stress[2] *= std::sqrt(2.);
         rows.block<3, 1>(3 * q, k) = std::sqrt(places[q].weight) * stress;
       }
@@ -57,20 +57,20 @@ struct Action {
 
 class Carrier {
  public:
-  Carrier(const Discretization& problem, const LawOnMesh& laws, const ContactPressure& pressure)
-      : problem_(problem),
-        mesh_(problem.mesh),
+  Carrier(const Discretization& discrete, const LawOnMesh& laws, const ContactPressure& pressure)
+      : discrete_(discrete),
+        mesh_(discrete.mesh),
         laws_(laws),
         pressure_(pressure),
         way_out_(mesh_.triangles.size(), -1),
         loads_(mesh_),
-        squares_of_loads_(Eigen::VectorXd::Zero(problem.triangles())),
-        on_edges_(Eigen::Matrix3Xd::Zero(3, problem.triangles())) {}
+        squares_of_loads_(Eigen::VectorXd::Zero(discrete.triangles())),
+        on_edges_(Eigen::Matrix3Xd::Zero(3, discrete.triangles())) {}
 
   CarriedLoads run(const std::vector<double>& forces) {
     std::vector<Action> into(mesh_.triangles.size());
     bool is_any = !pressure_.lacks.empty();
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       if (!forces.empty()) add_load(t, forces[t], into[t]);
       is_any = !start(t, into[t]) || is_any;
     }
@@ -101,16 +101,16 @@ class Carrier {
     back.forces.resize(triangles);
     std::vector<double> areas(triangles);
     std::vector<Action> into(mesh_.triangles.size());
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       start(t, into[t]);
       back.forces[parents[t]] += into[t].force;
       areas[parents[t]] += area(t);
     }
     // What is brought back acts against the constant load that stands for it.
-    for (int t = 0; t < problem_.triangles(); ++t)
+    for (int t = 0; t < discrete_.triangles(); ++t)
       add_load(t, back.forces[parents[t]] * area(t) / areas[parents[t]], into[t]);
     std::vector<int> order;
-    for (int root = 0; root < problem_.triangles(); ++root) {
+    for (int root = 0; root < discrete_.triangles(); ++root) {
       if (seen_[root]) continue;
       std::size_t next = order.size();
       reach(root, -1, order);
@@ -140,7 +140,7 @@ class Carrier {
 
   /// The rigid motions of a body, in units of its size, along a direction; the deflection of a membrane.
   Eigen::VectorXd motions_along(const Point& x, const Vector& d) const {
-    if (problem_.spaces().components == 1) return Eigen::VectorXd::Constant(1, 1);
+    if (discrete_.spaces().components == 1) return Eigen::VectorXd::Constant(1, 1);
     const Vector r = (x - mesh_.points[0]) / extent();
     return Eigen::Vector3d(d.x(), d.y(), d.y() * r.x() - d.x() * r.y());
   }
@@ -158,7 +158,7 @@ class Carrier {
     std::vector<Side> sides;
     double total = 0, length = 0;
     for (std::size_t i = 0; i < pressure_.at_ends.size(); ++i) {
-      const ContactEdge& contact = problem_.clearance.edges[i];
+      const ContactEdge& contact = discrete_.clearance.edges[i];
       const double of_edge = mesh_.length(contact.edge),
                    force = of_edge * (pressure_.at_ends[i][0] + pressure_.at_ends[i][1]) / 2;
       if (force == 0 || pressure_.steep.contains(contact.edge)) continue;
@@ -168,7 +168,7 @@ class Carrier {
     }
     const std::size_t contacts = sides.size();
     for (const BoundaryPart& part : mesh_.boundary)
-      if (condition_on<Roller>(problem_.problem, part.name))
+      if (condition_on<Roller>(discrete_.problem, part.name))
         for (const int edge : part.edges)
           sides.push_back(
               {edge, mesh_.outward_normal(edge), length > 0 ? total / length * mesh_.length(edge) : 0});
@@ -183,7 +183,7 @@ class Carrier {
     const double least =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
     double resultant = 0;
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       const double distance = (mesh_.centroid(t) - mesh_.points[0]).norm() + size(t);
       resultant += 2 * into[t].force + (into[t].moment + into[t].force * distance) / extent();
     }
@@ -214,10 +214,10 @@ class Carrier {
   /// Returns whether there are none.
   bool start(int t, Action& into) {
     const double h = size(t);
-    add_load(t, problem_.body[t].uncertain_force, into);
+    add_load(t, discrete_.body[t].uncertain_force, into);
     for (const int edge : mesh_.triangle_edges[t]) {
-      if (!problem_.traction.acts_on(edge)) continue;
-      const double of_edge = problem_.traction[edge].uncertain_force;
+      if (!discrete_.traction.acts_on(edge)) continue;
+      const double of_edge = discrete_.traction[edge].uncertain_force;
       if (of_edge == 0) continue;
       add_edge(t, edge, {of_edge, of_edge * mesh_.length(edge) / 2});
       loads_.on_edges[t][mesh_.local_edge(t, edge)] += of_edge;
@@ -239,7 +239,7 @@ class Carrier {
 
   /// |J⁻¹| for an elastic body, whose rows are transformed too.
   double to_reference(const AffineMap& map) const {
-    return problem_.spaces().components == 1 ? 1 : map.jacobian.inverse().norm();
+    return discrete_.spaces().components == 1 ? 1 : map.jacobian.inverse().norm();
   }
 
   /// A linear traction on the edge with the force and the moment, at three nodes. Several add up.
@@ -253,7 +253,7 @@ class Carrier {
   std::vector<int> from_fixed_parts() {
     std::vector<int> order;
     for (const BoundaryPart& part : mesh_.boundary)
-      if (condition_on<Fixed>(problem_.problem, part.name))
+      if (condition_on<Fixed>(discrete_.problem, part.name))
         for (const int edge : part.edges) reach(mesh_.edge_triangles[edge][0], edge, order);
     return grown(std::move(order));
   }
@@ -281,7 +281,7 @@ class Carrier {
   /// A membrane has no moments to pass on: its traction there is constant.
   void pass_on(int t, std::vector<Action>& into) {
     const int edge = way_out_[t];
-    if (problem_.spaces().components == 1) into[t].moment = 0;
+    if (discrete_.spaces().components == 1) into[t].moment = 0;
     add_edge(t, edge, into[t]);
     const auto& [one, other] = mesh_.edge_triangles[edge];
     const int next = one == t ? other : one;
@@ -295,13 +295,13 @@ class Carrier {
     const AffineMap map(mesh_.corners(t));
     const double j = map.jacobian.squaredNorm(),
                  squares_of_data = squares_of_loads_[t] + 3 * on_edges_.col(t).squaredNorm();
-    return problem_.spaces().components == 1 ? laws_.whole(t).softest * j / map.determinant *
-                                                   std::pow(norm_of_membrane_element(), 2) * squares_of_data
-                                             : laws_.whole(t).softest * j * j / map.determinant *
-                                                   std::pow(norm_of_macro_element(), 2) * squares_of_data;
+    return discrete_.spaces().components == 1 ? laws_.whole(t).softest * j / map.determinant *
+                                                    std::pow(norm_of_membrane_element(), 2) * squares_of_data
+                                              : laws_.whole(t).softest * j * j / map.determinant *
+                                                    std::pow(norm_of_macro_element(), 2) * squares_of_data;
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Mesh& mesh_;
   const LawOnMesh& laws_;
   const ContactPressure& pressure_;
@@ -314,9 +314,9 @@ class Carrier {
 
 }  // namespace
 
-CarriedLoads carry_uncertain_loads(const Discretization& problem, const LawOnMesh& laws,
+CarriedLoads carry_uncertain_loads(const Discretization& discrete, const LawOnMesh& laws,
                                    const ContactPressure& pressure, const std::vector<double>& forces) {
-  return Carrier(problem, laws, pressure).run(forces);
+  return Carrier(discrete, laws, pressure).run(forces);
 }
 
 LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws,

@@ -39,7 +39,7 @@ struct CarriedLoads {
 
 /// `forces`: of loads that are constant on each triangle and act there besides, those of LoadsBroughtBack;
 /// none if empty.
-CarriedLoads carry_uncertain_loads(const Discretization& problem, const LawOnMesh& laws,
+CarriedLoads carry_uncertain_loads(const Discretization& discrete, const LawOnMesh& laws,
                                    const ContactPressure& pressure, const std::vector<double>& forces = {});
 
 /// What is not known of the data on a patch of a membrane, whose triangles are parts of those of the whole:

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 
@@ -62,7 +62,7 @@ LocalStress<2>::LocalStress(const std::array<Point, 3>& corners) {
       mass.block<2, 2>(2 * z, 2 * y) = area / (z == y ? 6 : 12) * Eigen::Matrix2d::Identity();
 
   // The load of a traction is the rigid motion that balances it.
-  Eigen::Matrix<double, MacroElement::kData, kUnknowns> data = decltype(data)::Zero();
+  Eigen::Matrix<double, JohnsonMercier::kData, kUnknowns> data = decltype(data)::Zero();
   Eigen::Matrix<double, 3, kTractions> moments;
   for (int e = 0; e < 3; ++e) {
     const double length = (corners[(e + 2) % 3] - corners[(e + 1) % 3]).norm();
@@ -83,9 +83,9 @@ LocalStress<2>::LocalStress(const std::array<Point, 3>& corners) {
   for (int j = 0; j < kUnknowns; ++j)
     data.col(j).tail<12>() =
         (-map.determinant * inverse * at_nodes<2>(load.col(j).reshaped(2, 3))).reshaped();
-  const MacroRule& rule = macro_rule(spaces_of(Scheme::nonconforming, 2), 6);
-  const MacroNorms norms(rule, map, SymmetricLaw(Eigen::Matrix4d::Identity()));
-  const Eigen::MatrixXd root = norms.correction.leftCols<MacroElement::kData>() * data;
+  const JohnsonMercierRule& rule = johnson_mercier_rule(spaces_of(Scheme::nonconforming, 2), 6);
+  const JohnsonMercierNorms norms(rule, map, SymmetricLaw(Eigen::Matrix4d::Identity()));
+  const Eigen::MatrixXd root = norms.correction.leftCols<JohnsonMercier::kData>() * data;
   energy = root.transpose() * root;
 }
 

@@ -10,7 +10,7 @@ namespace signorini {
 
 /// The stresses of compliance 1 on a mesh that have a linear load on each triangle, linear tractions on the
 /// edges between them and on the loaded edges, and no traction on the rest of the boundary: those of RT1 for
-/// a membrane, and of the macro-elements (macro_element.hpp) for an elastic body. The unknowns are the
+/// a membrane, and of the macro-elements (johnson_mercier.hpp) for an elastic body. The unknowns are the
 /// tractions at both ends of the loaded edges, then those of the edges inside, then what the triangles have
 /// more.
 template <int D>

@@ -33,14 +33,15 @@ std::string reason(const Field& field, const Point& x) {
 
 }  // namespace
 
-std::vector<std::string> lost_digits(const Discretization& problem, double displacement, Progress& progress) {
-  const Mesh& mesh = problem.mesh;
+std::vector<std::string> lost_digits(const Discretization& discrete, double displacement,
+                                     Progress& progress) {
+  const Mesh& mesh = discrete.mesh;
   std::vector<std::string> all;
-  const Material& material = problem.problem.material;
+  const Material& material = discrete.problem.material;
   const Vector none = Vector::Zero();
   for (const Field* field : fields_of(material)) {
     if (!field->formula()) continue;
-    for (int t = 0; t < problem.triangles(); ++t) {
+    for (int t = 0; t < discrete.triangles(); ++t) {
       progress.check_in(t);
       const Point x = mesh.centroid(t);
       if (has_digits(*field, x, none, 0) || has_digits(*field, x, none, scale_of(material, *field, x)))
@@ -50,8 +51,8 @@ std::vector<std::string> lost_digits(const Discretization& problem, double displ
     }
   }
   for (const BoundaryPart& part : mesh.boundary) {
-    const auto condition = problem.problem.boundary.find(part.name);
-    if (condition == problem.problem.boundary.end()) continue;
+    const auto condition = discrete.problem.boundary.find(part.name);
+    if (condition == discrete.problem.boundary.end()) continue;
     const bool is_carried = std::holds_alternative<Traction>(condition->second) ||
                             std::holds_alternative<Pressure>(condition->second);
     if (is_carried) continue;

@@ -13,6 +13,6 @@ namespace signorini {
 /// carry what they lack: ProjectedLoad::uncertain_force. Throws what `progress` throws.
 ///
 /// `displacement`: the largest; a gap or a fixed value that is off by much less does no harm.
-std::vector<std::string> lost_digits(const Discretization& problem, double displacement, Progress& progress);
+std::vector<std::string> lost_digits(const Discretization& discrete, double displacement, Progress& progress);
 
 }  // namespace signorini

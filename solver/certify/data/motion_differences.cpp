@@ -23,19 +23,19 @@ class Motions {
  public:
   static constexpr int kOwn = D == 1 ? 1 : 3;
 
-  Motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads,
+  Motions(const Discretization& discrete, const LawOnMesh& laws, const UncertainLoads& loads,
           std::optional<int> held)
-      : problem_(problem), mesh_(problem.mesh), laws_(laws), loads_(loads), held_(held) {
-    for (int t = 0; t < problem.triangles(); ++t)
+      : discrete_(discrete), mesh_(discrete.mesh), laws_(laws), loads_(loads), held_(held) {
+    for (int t = 0; t < discrete.triangles(); ++t)
       remainders_.push_back(motion_remainder<D>(mesh_.corners(t)));
     for (const BoundaryPart& part : mesh_.boundary)
-      if (condition_on<Fixed>(problem.problem, part.name))
+      if (condition_on<Fixed>(discrete.problem, part.name))
         for (const int edge : part.edges) is_fixed_[edge] = true;
   }
 
   double bound(Progress& progress) const {
     double forces = 0, beyond_square = 0;
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       forces += force_on(t);
       beyond_square += std::pow(beyond_motion(t), 2);
     }
@@ -99,7 +99,7 @@ class Motions {
     return kOwn * (held_ && t > *held_ ? t - 1 : t);
   }
 
-  int size() const { return kOwn * (problem_.triangles() - (held_ ? 1 : 0)); }
+  int size() const { return kOwn * (discrete_.triangles() - (held_ ? 1 : 0)); }
 
   /// Σ_e ‖R_T v − R_T' v‖²_e / w_e − shift Σ F_T max |R_T v|².
   ElementSum quotient(double shift) const {
@@ -108,7 +108,7 @@ class Motions {
     sum.per_element = 2 * kOwn;
     for (int edge = 0; edge < static_cast<int>(mesh_.edges.size()); ++edge)
       if (counts(edge)) add(sum, mesh_.edge_triangles[edge], of_edge(edge), middle(edge));
-    for (int t = 0; shift > 0 && t < problem_.triangles(); ++t) {
+    for (int t = 0; shift > 0 && t < discrete_.triangles(); ++t) {
       if (force_on(t) == 0 || first(t) < 0) continue;
       OfPair own = OfPair::Zero();
       own.diagonal().template head<kOwn>() = -shift * force_on(t) * largest_square();
@@ -176,7 +176,7 @@ class Motions {
   /// By the inverse iteration.
   double foreseen(Progress& progress) const {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(size());
-    for (int t = 0; t < problem_.triangles(); ++t)
+    for (int t = 0; t < discrete_.triangles(); ++t)
       if (first(t) >= 0) squares.segment<kOwn>(first(t)) = force_on(t) * largest_square();
     const Cholesky factor(quotient(0), 0, progress);
     Cholesky::Workspace workspace;
@@ -195,7 +195,7 @@ class Motions {
     return quotient;
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Mesh& mesh_;
   const LawOnMesh& laws_;
   const UncertainLoads& loads_;
@@ -206,10 +206,10 @@ class Motions {
 
 }  // namespace
 
-double carried_by_motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads,
+double carried_by_motions(const Discretization& discrete, const LawOnMesh& laws, const UncertainLoads& loads,
                           std::optional<int> held, Progress& progress) {
-  return problem.spaces().components == 1 ? Motions<1>(problem, laws, loads, held).bound(progress)
-                                          : Motions<2>(problem, laws, loads, held).bound(progress);
+  return discrete.spaces().components == 1 ? Motions<1>(discrete, laws, loads, held).bound(progress)
+                                           : Motions<2>(discrete, laws, loads, held).bound(progress);
 }
 
 }  // namespace signorini

@@ -34,7 +34,7 @@ struct UncertainLoads {
 ///
 /// `held`: without Γ_D the loads must be balanced; then a triangle of which the motion counts as none, for to
 /// take a rigid motion off v changes nothing. All triangles must hang together with Γ_D or with it.
-double carried_by_motions(const Discretization& problem, const LawOnMesh& laws, const UncertainLoads& loads,
+double carried_by_motions(const Discretization& discrete, const LawOnMesh& laws, const UncertainLoads& loads,
                           std::optional<int> held, Progress& progress);
 
 }  // namespace signorini

@@ -9,17 +9,17 @@
 namespace signorini {
 
 template <int D>
-double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
+double oscillation(const Discretization& discrete, int t, const ContactPressure& pressure,
                    const LawOnMesh& laws, CellBudget& budget) {
-  const auto corners = problem.mesh.corners(t);
-  const ProjectedLoad& load = problem.body[t];
+  const auto corners = discrete.mesh.corners(t);
+  const ProjectedLoad& load = discrete.body[t];
   double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
   if (load.jumps && sum > 0)
-    sum = std::min(sum, jump_oscillation<D>(problem.problem.body, load, corners, budget));
+    sum = std::min(sum, jump_oscillation<D>(discrete.problem.body, load, corners, budget));
   for (int e = 0; e < 3; ++e) {
-    const int edge = problem.mesh.triangle_edges[t][e];
+    const int edge = discrete.mesh.triangle_edges[t][e];
     const double rest =
-        problem.traction.acts_on(edge) ? problem.traction[edge].rest : pressure.beyond_linear(edge);
+        discrete.traction.acts_on(edge) ? discrete.traction[edge].rest : pressure.beyond_linear(edge);
     if (rest > 0) sum += linear_remainder_on_edge<D>(corners, e) * rest;
   }
   return sum == 0 ? 0 : sum * std::sqrt(laws.whole(t).softest);

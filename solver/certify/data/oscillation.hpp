@@ -16,7 +16,7 @@ namespace signorini {
 /// the integrals are off by makes Π₁r and Π₁q; they are carried elsewhere, carried_loads.hpp. The budget is
 /// for a load that jumps.
 template <int D>
-double oscillation(const Discretization& problem, int t, const ContactPressure& pressure,
+double oscillation(const Discretization& discrete, int t, const ContactPressure& pressure,
                    const LawOnMesh& laws, CellBudget& budget);
 
 }  // namespace signorini

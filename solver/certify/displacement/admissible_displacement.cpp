@@ -9,7 +9,7 @@
 
 #include "certify/displacement/displacement_relaxation.hpp"
 #include "certify/displacement/gap_bubble.hpp"
-#include "certify/displacement/potential.hpp"
+#include "certify/displacement/recovered_displacement.hpp"
 #include "certify/displacement/relaxation.hpp"
 #include "fem/edge_pieces.hpp"
 
@@ -89,50 +89,50 @@ double bend(const Field& field, const EdgeLine& line) {
 
 }  // namespace
 
-const Field& gap_on(const Discretization& problem, const ContactEdge& contact) {
-  const std::string& part = problem.mesh.boundary[problem.clearance.rows[contact.rows[0]].part].name;
-  return condition_on<Contact>(problem.problem, part)->gap;
+const Field& gap_on(const Discretization& discrete, const ContactEdge& contact) {
+  const std::string& part = discrete.mesh.boundary[discrete.clearance.rows[contact.rows[0]].part].name;
+  return condition_on<Contact>(discrete.problem, part)->gap;
 }
 
-AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
+AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
                                                const Eigen::VectorXd& coupling, Progress& progress)
-    : problem_(problem),
-      components_(problem.spaces().components),
-      clearance_(problem.clearance.clearance(coupling.tail(problem.traces.contact_unknowns()))),
-      points_(displacement_at_corners(problem, solution)),
+    : discrete_(discrete),
+      components_(discrete.spaces().components),
+      clearance_(discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()))),
+      points_(displacement_at_corners(discrete, solution)),
       scale_(points_.cwiseAbs().maxCoeff()) {
-  for (std::size_t i = 0; i < problem.clearance.rows.size(); ++i)
-    clearance_[i] += problem.clearance.rows[i].beyond;
+  for (std::size_t i = 0; i < discrete.clearance.rows.size(); ++i)
+    clearance_[i] += discrete.clearance.rows[i].beyond;
   constrain_points();
   set_middles(coupling);
-  for (const BoundaryPart& part : problem.mesh.boundary) {
-    if (const auto* fixed = condition_on<Fixed>(problem.problem, part.name)) fix(part, *fixed);
-    if (condition_on<Roller>(problem.problem, part.name)) roll(part);
+  for (const BoundaryPart& part : discrete.mesh.boundary) {
+    if (const auto* fixed = condition_on<Fixed>(discrete.problem, part.name)) fix(part, *fixed);
+    if (condition_on<Roller>(discrete.problem, part.name)) roll(part);
   }
   CellBudget budget{kCellsOfGaps, &progress};
   lower_points(budget);
-  for (const ContactEdge& contact : problem.clearance.edges) meet(contact, budget);
+  for (const ContactEdge& contact : discrete.clearance.edges) meet(contact, budget);
 }
 
 void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progress& progress) {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   QuadraticValues values(mesh);
   values.points = points_.row(0);
   values.middles = middles_.row(0);
   for (const auto& [point, value] : fixed_points_) values.held_points[point] = true;
   for (const BoundaryPart& part : mesh.boundary)
-    if (condition_on<Fixed>(problem_.problem, part.name))
+    if (condition_on<Fixed>(discrete_.problem, part.name))
       for (const int edge : part.edges) values.held_middles[edge] = true;
   const auto touches = [&](const ContactEdge& contact, int k) { return clearance_[contact.rows[k]] <= 0; };
-  for (const ContactEdge& contact : problem_.clearance.edges) {
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
     values.held_middles[contact.edge] = touches(contact, 0) && touches(contact, 1);
     for (int k = 0; k < 2; ++k)
       if (touches(contact, k)) values.held_points[mesh.edges[contact.edge][k]] = true;
   }
-  signorini::relax(problem_, stiffness_of, values, work, steps, progress);
+  signorini::relax(discrete_, stiffness_of, values, work, steps, progress);
   points_.row(0) = values.points;
   middles_.row(0) = values.middles;
-  for (const ContactEdge& contact : problem_.clearance.edges)
+  for (const ContactEdge& contact : discrete_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const int point = mesh.edges[contact.edge][k];
       const double lack = -room(contact, k);
@@ -140,19 +140,19 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
     }
   CellBudget budget{kCellsOfGaps, &progress};
   lower_points(budget);
-  for (const ContactEdge& contact : problem_.clearance.edges)
+  for (const ContactEdge& contact : discrete_.clearance.edges)
     if (!values.held_middles[contact.edge]) lower_below(contact, budget);
 }
 
 void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   const std::size_t points = mesh.points.size();
   std::vector<NodeFreedom> freedom(points + mesh.edges.size());
   for (const auto& [point, value] : fixed_points_) freedom[point].held = true;
   for (const BoundaryPart& part : mesh.boundary) {
-    const bool rolls = condition_on<Roller>(problem_.problem, part.name);
+    const bool rolls = condition_on<Roller>(discrete_.problem, part.name);
     for (const int edge : part.edges) {
-      if (condition_on<Fixed>(problem_.problem, part.name)) freedom[points + edge].held = true;
+      if (condition_on<Fixed>(discrete_.problem, part.name)) freedom[points + edge].held = true;
       if (!rolls) continue;
       const Vector n = mesh.outward_normal(edge);
       for (const std::size_t node :
@@ -160,14 +160,14 @@ void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
         freedom[node].hold_along(n, mesh.rounding_of_normal(edge));
     }
   }
-  for (const ContactEdge& contact : problem_.clearance.edges) {
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
     const double rounding = mesh.rounding_of_normal(contact.edge);
     for (const int point : mesh.edges[contact.edge]) freedom[point].hold_along(contact.direction, rounding);
     freedom[points + contact.edge].hold_along(contact.direction, rounding);
   }
-  relax_displacement(problem_, freedom, sweeps, points_, middles_, progress);
+  relax_displacement(discrete_, freedom, sweeps, points_, middles_, progress);
   CellBudget budget{kCellsOfGaps, &progress};
-  for (const ContactEdge& contact : problem_.clearance.edges)
+  for (const ContactEdge& contact : discrete_.clearance.edges)
     if (!follows_gap(contact)) lower_below(contact, budget);
 }
 
@@ -181,7 +181,7 @@ const Lift* AdmissibleDisplacement::lift(int edge) const {
 }
 
 bool AdmissibleDisplacement::is_lifted(int t) const {
-  return std::ranges::any_of(problem_.mesh.triangle_edges[t],
+  return std::ranges::any_of(discrete_.mesh.triangle_edges[t],
                              [&](int edge) { return lift(edge) != nullptr; });
 }
 
@@ -192,11 +192,11 @@ void AdmissibleDisplacement::add_lifts(int t, const Point& reference, const Eige
   const Eigen::Matrix2d gradients = inverse_jacobian.transpose();
   const std::array<Vector, 3> hat_gradients{-gradients.rowwise().sum(), gradients.col(0), gradients.col(1)};
   for (int e = 0; e < 3; ++e) {
-    const int edge = problem_.mesh.triangle_edges[t][e];
+    const int edge = discrete_.mesh.triangle_edges[t][e];
     const Lift* lifted = lift(edge);
     if (!lifted) continue;
     int a = (e + 1) % 3, b = (e + 2) % 3;
-    if (problem_.mesh.triangles[t][a] != problem_.mesh.edges[edge][0]) std::swap(a, b);
+    if (discrete_.mesh.triangles[t][a] != discrete_.mesh.edges[edge][0]) std::swap(a, b);
     value += lifted->value(hats[a], hats[b]);
     const Eigen::Matrix2Xd gradient =
         lifted->gradient(hats[a], hats[b], hat_gradients[a], hat_gradients[b]).transpose();
@@ -210,7 +210,7 @@ template void AdmissibleDisplacement::add_lifts<2>(int, const Point&, const Eige
                                                    Eigen::Matrix<double, 2, 1>&, Tensor<2>&) const;
 
 Eigen::VectorXd AdmissibleDisplacement::on_edge(int edge, double s) const {
-  const auto& [a, b] = problem_.mesh.edges[edge];
+  const auto& [a, b] = discrete_.mesh.edges[edge];
   const Eigen::VectorXd quadratic = (1 - s) * (1 - 2 * s) * points_.col(a) +
                                     s * (2 * s - 1) * points_.col(b) + 4 * s * (1 - s) * middles_.col(edge);
   const Lift* lifted = lift(edge);
@@ -227,7 +227,7 @@ double AdmissibleDisplacement::room(const ContactEdge& contact, double s) const 
 
 AdmissibleDisplacement::LiftRest AdmissibleDisplacement::rest_of_lifts(int t) const {
   LiftRest sum;
-  for (const int edge : problem_.mesh.triangle_edges[t]) {
+  for (const int edge : discrete_.mesh.triangle_edges[t]) {
     const auto found = rests_.find(edge);
     if (found == rests_.end()) continue;
     sum.value += found->second.value;
@@ -239,8 +239,8 @@ AdmissibleDisplacement::LiftRest AdmissibleDisplacement::rest_of_lifts(int t) co
 double AdmissibleDisplacement::largest_on(int t) const {
   double sum = 0;
   for (int k = 0; k < 3; ++k)
-    sum = std::max({sum, points_.col(problem_.mesh.triangles[t][k]).norm(),
-                    middles_.col(problem_.mesh.triangle_edges[t][k]).norm()});
+    sum = std::max({sum, points_.col(discrete_.mesh.triangles[t][k]).norm(),
+                    middles_.col(discrete_.mesh.triangle_edges[t][k]).norm()});
   // The functions of P2 add up to at most 5/3 in absolute value.
   return 5. / 3 * sum;
 }
@@ -251,13 +251,13 @@ Eigen::VectorXd AdmissibleDisplacement::direction(const ContactEdge& contact) co
 }
 
 const Field& AdmissibleDisplacement::gap(const ContactEdge& contact) const {
-  return gap_on(problem_, contact);
+  return gap_on(discrete_, contact);
 }
 
 /// Where the gap jumps in a node, that of this edge.
 double AdmissibleDisplacement::gap_at(const ContactEdge& contact, double s) const {
   const Field& own = gap(contact);
-  const EdgeLine line(problem_.mesh, contact.edge);
+  const EdgeLine line(discrete_.mesh, contact.edge);
   const double value = line.value(own, s);
   if (s > 0 && s < 1) return value;
   return values_at_end(own, line, s, kSmall * std::max(std::abs(value), scale_)).lower();
@@ -268,14 +268,14 @@ void AdmissibleDisplacement::refuse(const std::string& reason) {
 }
 
 void AdmissibleDisplacement::refuse_point(int point) {
-  refuse("no displacement meets all conditions at " + to_string(problem_.mesh.points[point]));
+  refuse("no displacement meets all conditions at " + to_string(discrete_.mesh.points[point]));
 }
 
 /// The points of Γ_D get u_D; those of Γ_C and of rollers the nearest value that their edges allow.
 void AdmissibleDisplacement::constrain_points() {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   for (const BoundaryPart& part : mesh.boundary)
-    if (const auto* fixed = condition_on<Fixed>(problem_.problem, part.name))
+    if (const auto* fixed = condition_on<Fixed>(discrete_.problem, part.name))
       for (const int edge : part.edges) fix_points(edge, *fixed);
 
   // The normals of a straight line are one, but for rounding, and must not meet in a point.
@@ -287,11 +287,11 @@ void AdmissibleDisplacement::constrain_points() {
     constraints_[point].push_back(std::move(constraint));
   };
   for (const BoundaryPart& part : mesh.boundary)
-    if (condition_on<Roller>(problem_.problem, part.name))
+    if (condition_on<Roller>(discrete_.problem, part.name))
       for (const int edge : part.edges)
         for (const int point : mesh.edges[edge])
           constrain(point, {mesh.outward_normal(edge), 0, true, true, mesh.rounding_of_normal(edge)});
-  for (const ContactEdge& contact : problem_.clearance.edges)
+  for (const ContactEdge& contact : discrete_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
       // A gap that is out of reach rounds nothing that matters.
@@ -308,19 +308,19 @@ void AdmissibleDisplacement::constrain_points() {
 /// lower it there would change the volume, which costs the more the less compressible the body is: the ends
 /// come as near to g as the trace instead, where the other conditions let them.
 void AdmissibleDisplacement::follow_traces() {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   auto constraints = constraints_;
-  std::vector<bool> follows(problem_.clearance.edges.size(), false);
+  std::vector<bool> follows(discrete_.clearance.edges.size(), false);
   for (bool again = true; std::exchange(again, false);)
     for (std::size_t i = 0; i < follows.size(); ++i) {
-      const ContactEdge& contact = problem_.clearance.edges[i];
+      const ContactEdge& contact = discrete_.clearance.edges[i];
       if (follows[i] || !exceeds_gap(contact)) continue;
       follows[i] = again = true;
       for (int k = 0; k < 2; ++k) {
         const int point = mesh.edges[contact.edge][k];
         auto& own = constraints[point];
         if (fixed_points_.contains(point) ||
-            turns_slightly(own, problem_.problem.material, mesh.points[point]))
+            turns_slightly(own, discrete_.problem.material, mesh.points[point]))
           continue;
         own.push_back({-direction(contact), clearance_[contact.rows[k]] - gap_at(contact, k), false});
         if (const auto nearest = nearest_admissible(points_.col(point), own, scale_))
@@ -334,7 +334,7 @@ void AdmissibleDisplacement::follow_traces() {
 bool AdmissibleDisplacement::exceeds_gap(const ContactEdge& contact) const {
   std::array<double, 2> room;
   for (int k = 0; k < 2; ++k) {
-    const int point = problem_.mesh.edges[contact.edge][k];
+    const int point = discrete_.mesh.edges[contact.edge][k];
     room[k] = std::max(0., gap_at(contact, k) - direction(contact).dot(points_.col(point)));
   }
   const double mean = (clearance_[contact.rows[0]] + clearance_[contact.rows[1]]) / 2;
@@ -344,14 +344,14 @@ bool AdmissibleDisplacement::exceeds_gap(const ContactEdge& contact) const {
 
 void AdmissibleDisplacement::fix_points(int edge, const Fixed& fixed) {
   for (int end = 0; end < 2; ++end) {
-    const int point = problem_.mesh.edges[edge][end];
-    const auto [x, normal] = problem_.mesh.on_boundary(edge, end);
+    const int point = discrete_.mesh.edges[edge][end];
+    const auto [x, normal] = discrete_.mesh.on_boundary(edge, end);
     const Eigen::VectorXd value = value_of(fixed.value, components_, x, normal);
     scale_ = std::max(scale_, value.lpNorm<Eigen::Infinity>());
     const auto [known, is_new] = fixed_points_.try_emplace(point, value);
     points_.col(point) = known->second;
     if (!is_new && (known->second - value).lpNorm<Eigen::Infinity>() > kSmall * scale_)
-      refuse("the fixed values jump at " + to_string(problem_.mesh.points[point]));
+      refuse("the fixed values jump at " + to_string(discrete_.mesh.points[point]));
   }
 }
 
@@ -359,7 +359,7 @@ void AdmissibleDisplacement::admit(int point, std::vector<PointConstraint> const
   const Eigen::VectorXd v = points_.col(point);
   std::optional<Eigen::VectorXd> nearest;
   const bool is_fixed = fixed_points_.contains(point);
-  if (!is_fixed && !turns_slightly(constraints, problem_.problem.material, problem_.mesh.points[point]))
+  if (!is_fixed && !turns_slightly(constraints, discrete_.problem.material, discrete_.mesh.points[point]))
     nearest = nearest_admissible(v, constraints, scale_);
   if (!nearest) {
     for (PointConstraint& constraint : constraints) constraint.equality = constraint.is_roller;
@@ -373,11 +373,11 @@ void AdmissibleDisplacement::admit(int point, std::vector<PointConstraint> const
 
 /// The mean of v_h over each edge is that of m.
 void AdmissibleDisplacement::set_middles(const Eigen::VectorXd& coupling) {
-  const Mesh& mesh = problem_.mesh;
-  const int per_edge = problem_.spaces().traces_per_edge(), functions = per_edge / components_;
+  const Mesh& mesh = discrete_.mesh;
+  const int per_edge = discrete_.spaces().traces_per_edge(), functions = per_edge / components_;
   middles_.resize(components_, mesh.edges.size());
-  for (int t = 0; t < problem_.triangles(); ++t) {
-    const LocalVector traces = problem_.traces.values(t, coupling);
+  for (int t = 0; t < discrete_.triangles(); ++t) {
+    const LocalVector traces = discrete_.traces.values(t, coupling);
     for (int e = 0; e < 3; ++e) {
       const int edge = mesh.triangle_edges[t][e];
       if (mesh.edge_triangles[edge][0] != t) continue;
@@ -392,9 +392,9 @@ void AdmissibleDisplacement::set_middles(const Eigen::VectorXd& coupling) {
 
 void AdmissibleDisplacement::fix(const BoundaryPart& part, const Fixed& fixed) {
   for (const int edge : part.edges) {
-    const EdgeLine line(problem_.mesh, edge);
+    const EdgeLine line(discrete_.mesh, edge);
     const auto value = [&](double s) {
-      const auto [x, normal] = problem_.mesh.on_boundary(edge, s);
+      const auto [x, normal] = discrete_.mesh.on_boundary(edge, s);
       return value_of(fixed.value, components_, x, normal);
     };
     middles_.col(edge) = value(0.5);
@@ -425,8 +425,8 @@ void AdmissibleDisplacement::add_rest(int edge, const EdgeLine& line, const Fiel
   if (ninth == 0) return;
   const Lift::Errors& errors = Lift::errors();
   const double d = ninth * errors.value, slope = ninth * errors.slope;
-  const int t = problem_.mesh.edge_triangles[edge][0], e = problem_.mesh.local_edge(t, edge);
-  const Eigen::Matrix2d gradients = AffineMap(problem_.mesh.corners(t)).jacobian.inverse().transpose();
+  const int t = discrete_.mesh.edge_triangles[edge][0], e = discrete_.mesh.local_edge(t, edge);
+  const Eigen::Matrix2d gradients = AffineMap(discrete_.mesh.corners(t)).jacobian.inverse().transpose();
   const std::array<Vector, 3> hats{-gradients.rowwise().sum(), gradients.col(0), gradients.col(1)};
   const double of_b = std::max(hats[(e + 1) % 3].norm(), hats[(e + 2) % 3].norm());
   LiftRest& rest = rests_[edge];
@@ -436,7 +436,7 @@ void AdmissibleDisplacement::add_rest(int edge, const EdgeLine& line, const Fiel
 
 void AdmissibleDisplacement::roll(const BoundaryPart& part) {
   for (const int edge : part.edges) {
-    const Eigen::VectorXd n = problem_.mesh.outward_normal(edge);
+    const Eigen::VectorXd n = discrete_.mesh.outward_normal(edge);
     middles_.col(edge) -= n.dot(middles_.col(edge)) * n;
   }
 }
@@ -444,7 +444,7 @@ void AdmissibleDisplacement::roll(const BoundaryPart& part) {
 void AdmissibleDisplacement::meet(const ContactEdge& contact, CellBudget& budget) {
   if (!is_known_on_edges(gap(contact)))
     refuse(gap(contact).name() + " is a function that is known in single points only: give a formula");
-  const auto& [a, b] = problem_.mesh.edges[contact.edge];
+  const auto& [a, b] = discrete_.mesh.edges[contact.edge];
   for (const int k : {0, 1})
     if (room(contact, k) < -kNearly * scale_) return refuse_point(k == 0 ? a : b);
   const Eigen::VectorXd n = direction(contact);
@@ -460,10 +460,10 @@ void AdmissibleDisplacement::meet(const ContactEdge& contact, CellBudget& budget
 /// Where a polynomial is off by more than the gap differs from a straight line, as where it has many waves on
 /// an edge, to stay below the gap is better than to follow it.
 void AdmissibleDisplacement::find_followed_gaps() {
-  for (const ContactEdge& contact : problem_.clearance.edges) {
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
     if (clearance_[contact.rows[0]] > 0 || clearance_[contact.rows[1]] > 0) continue;
     const Field& own = gap(contact);
-    const EdgeLine line(problem_.mesh, contact.edge);
+    const EdgeLine line(discrete_.mesh, contact.edge);
     const double ninth =
         own.formula() ? largest_coefficient(own, line, Lift::kDegree + 1, small_coefficient()) : 0;
     const double off = ninth * Lift::errors().over_bubble;
@@ -490,9 +490,9 @@ BelowGap AdmissibleDisplacement::below_gap(const ContactEdge& contact, const Edg
 /// Where bubbles alone would be high, BelowGap::level(): v changes by what is linear on the triangles around
 /// a point, which keeps what is below the gap there.
 void AdmissibleDisplacement::lower_points(CellBudget& budget) {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   std::map<int, std::vector<PointConstraint>> lower;
-  for (const ContactEdge& contact : problem_.clearance.edges) {
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
     if (follows_gap(contact) || !is_known_on_edges(gap(contact))) continue;
     const EdgeLine line(mesh, contact.edge);
     double level = 0;
@@ -521,7 +521,7 @@ void AdmissibleDisplacement::lower_points(CellBudget& budget) {
 
 /// v_n ≤ g by a multiple of the bubble 4 s (1 − s).
 void AdmissibleDisplacement::lower_below(const ContactEdge& contact, CellBudget& budget) {
-  const EdgeLine line(problem_.mesh, contact.edge);
+  const EdgeLine line(discrete_.mesh, contact.edge);
   double needed = 0;
   budget.share(kShares, [&](CellBudget& own) { needed = below_gap(contact, line).bubble(own); });
   if (!std::isfinite(needed))

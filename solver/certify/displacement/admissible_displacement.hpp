@@ -16,7 +16,7 @@
 namespace signorini {
 
 /// The gap on a contact edge.
-const Field& gap_on(const Discretization& problem, const ContactEdge& contact);
+const Field& gap_on(const Discretization& discrete, const ContactEdge& contact);
 
 /// v_h of the certificate: continuous, u_D on Γ_D, v_n ≤ g on Γ_C, v_n = 0 on rollers, and one order better
 /// than u_h.
@@ -31,7 +31,7 @@ const Field& gap_on(const Discretization& problem, const ContactEdge& contact);
 class AdmissibleDisplacement {
  public:
   /// `coupling`: the unknowns of the trace space.
-  AdmissibleDisplacement(const Discretization& problem, const Solution& solution,
+  AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
                          const Eigen::VectorXd& coupling, Progress& progress);
 
   /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp.
@@ -45,8 +45,8 @@ class AdmissibleDisplacement {
   Quadratic<D> on(int t) const {
     Quadratic<D> values;
     for (int k = 0; k < 3; ++k) {
-      values.col(k) = points_.col(problem_.mesh.triangles[t][k]);
-      values.col(3 + k) = middles_.col(problem_.mesh.triangle_edges[t][k]);
+      values.col(k) = points_.col(discrete_.mesh.triangles[t][k]);
+      values.col(3 + k) = middles_.col(discrete_.mesh.triangle_edges[t][k]);
     }
     return values;
   }
@@ -111,7 +111,7 @@ class AdmissibleDisplacement {
   /// The vector with v_n = direction · v on a contact edge.
   Eigen::VectorXd direction(const ContactEdge& contact) const;
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   int components_;
   Eigen::VectorXd clearance_;  ///< a value a row of the clearance space
   Eigen::MatrixXd points_;     ///< a column a point

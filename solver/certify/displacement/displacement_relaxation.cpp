@@ -7,7 +7,7 @@
 
 #include "certify/data/balanced_load.hpp"
 #include "certify/displacement/star_relaxation.hpp"
-#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/johnson_mercier.hpp"
 #include "certify/local_fields.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
@@ -15,7 +15,7 @@
 namespace signorini {
 namespace {
 
-constexpr int kNodes = MacroElement::kNodes, kOuter = 6, kFollowing = kNodes - kOuter;
+constexpr int kNodes = JohnsonMercier::kNodes, kOuter = 6, kFollowing = kNodes - kOuter;
 
 using Matrix = TriangleForms::Matrix;
 using FormVector = TriangleForms::Vector;
@@ -27,7 +27,7 @@ struct ReferenceProducts {
 
   template <typename Weight>
   explicit ReferenceProducts(const Weight& weight_at) {
-    for (const MacroElement::Place& place : MacroElement::places(weighted(triangle_rule()))) {
+    for (const JohnsonMercier::Place& place : JohnsonMercier::places(weighted(triangle_rule()))) {
       const double weight = place.weight * weight_at(place.point);
       for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b)
@@ -56,7 +56,7 @@ const std::vector<ReferenceProducts>& reference_products(bool is_constant) {
 const Eigen::Matrix<double, kNodes, 6>& products_with_loads() {
   static const Eigen::Matrix<double, kNodes, 6> all = [] {
     Eigen::Matrix<double, kNodes, 6> sum = decltype(sum)::Zero();
-    for (const MacroElement::Place& place : MacroElement::places(weighted(triangle_rule())))
+    for (const JohnsonMercier::Place& place : JohnsonMercier::places(weighted(triangle_rule())))
       sum += place.weight * place.displacement_basis * quadratic_basis(place.point).transpose();
     return sum;
   }();
@@ -111,25 +111,25 @@ Condensed condensed(const AffineMap& map, bool is_constant, LawField<2>& law) {
 }
 
 /// (Πf, φ) for the functions of the triangle, which go on into it as it costs least.
-FormVector work_of_load(const Discretization& problem, int t, const Condensed& own) {
-  const double determinant = AffineMap(problem.mesh.corners(t)).determinant;
+FormVector work_of_load(const Discretization& discrete, int t, const Condensed& own) {
+  const double determinant = AffineMap(discrete.mesh.corners(t)).determinant;
   const Eigen::Matrix<double, 2, kNodes> work =
-      determinant * balanced_load<2>(problem, t) * products_with_loads().transpose();
+      determinant * balanced_load<2>(discrete, t) * products_with_loads().transpose();
   return work.leftCols<kOuter>().reshaped() -
          own.follows.transpose() * work.rightCols<kFollowing>().reshaped();
 }
 
 /// <Πt, φ> for the functions of the triangle.
-FormVector work_of_traction(const Discretization& problem, int t) {
-  const Mesh& mesh = problem.mesh;
+FormVector work_of_traction(const Discretization& discrete, int t) {
+  const Mesh& mesh = discrete.mesh;
   FormVector work = FormVector::Zero();
   for (int e = 0; e < 3; ++e) {
     const int edge = mesh.triangle_edges[t][e];
-    if (!problem.traction.acts_on(edge)) continue;
+    if (!discrete.traction.acts_on(edge)) continue;
     const bool forward = mesh.triangles[t][(e + 1) % 3] == mesh.edges[edge][0];
     const std::array<int, 3> nodes{(e + (forward ? 1 : 2)) % 3, (e + (forward ? 2 : 1)) % 3, 3 + e};
     for (int c = 0; c < 2; ++c) {
-      const LocalVector own = edge_moments(2, [&](double s) { return problem.traction(edge, c, s); });
+      const LocalVector own = edge_moments(2, [&](double s) { return discrete.traction(edge, c, s); });
       for (int k = 0; k < 3; ++k) work[2 * nodes[k] + c] += mesh.length(edge) * own[k];
     }
   }
@@ -138,9 +138,9 @@ FormVector work_of_traction(const Discretization& problem, int t) {
 
 class Relaxation {
  public:
-  Relaxation(const Discretization& problem, const std::vector<NodeFreedom>& freedom, Eigen::MatrixXd& points,
+  Relaxation(const Discretization& discrete, const std::vector<NodeFreedom>& freedom, Eigen::MatrixXd& points,
              Eigen::MatrixXd& middles)
-      : problem_(problem), mesh_(problem.mesh), freedom_(freedom), points_(points), middles_(middles) {}
+      : discrete_(discrete), mesh_(discrete.mesh), freedom_(freedom), points_(points), middles_(middles) {}
 
   void run(int sweeps, Progress& progress) {
     take_forms(progress);
@@ -175,16 +175,16 @@ class Relaxation {
       forms_.held.push_back(own.held);
       forms_.held.push_back(own.held || !own.normal.isZero(0));
     }
-    forms_.matrix_of.reserve(problem_.triangles());
-    forms_.slopes.reserve(problem_.triangles());
-    LawField<2> law(problem_.problem.material);
+    forms_.matrix_of.reserve(discrete_.triangles());
+    forms_.slopes.reserve(discrete_.triangles());
+    LawField<2> law(discrete_.problem.material);
     struct Shape {
       Condensed own;
       int number = -1;
     };
-    const bool is_constant = problem_.element.has_constant_material();
-    PerShape<Shape> shapes(problem_);
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    const bool is_constant = discrete_.element.has_constant_material();
+    PerShape<Shape> shapes(discrete_);
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       progress.check_in(t);
       Shape& shape =
           shapes(t, [&] { return Shape{condensed(AffineMap(mesh_.corners(t)), is_constant, law)}; });
@@ -196,7 +196,7 @@ class Relaxation {
     const std::array<int, 6> nodes = nodes_of(t);
     FormVector v;
     for (int k = 0; k < 6; ++k) v.segment<2>(2 * k) = value(nodes[k]);
-    FormVector slope = own.stiffness * v - work_of_load(problem_, t, own) - work_of_traction(problem_, t);
+    FormVector slope = own.stiffness * v - work_of_load(discrete_, t, own) - work_of_traction(discrete_, t);
     if (std::ranges::all_of(nodes, [&](int node) { return freedom_[node].normal.isZero(0); })) {
       if (number < 0) number = forms_.keep(own.stiffness);
       forms_.matrix_of.push_back(number);
@@ -209,7 +209,7 @@ class Relaxation {
     forms_.slopes.push_back(slope);
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Mesh& mesh_;
   const std::vector<NodeFreedom>& freedom_;
   Eigen::MatrixXd &points_, &middles_;
@@ -227,9 +227,9 @@ void NodeFreedom::hold_along(const Vector& n, double rounding_of_n) {
   }
 }
 
-void relax_displacement(const Discretization& problem, const std::vector<NodeFreedom>& freedom, int sweeps,
+void relax_displacement(const Discretization& discrete, const std::vector<NodeFreedom>& freedom, int sweeps,
                         Eigen::MatrixXd& points, Eigen::MatrixXd& middles, Progress& progress) {
-  Relaxation(problem, freedom, points, middles).run(sweeps, progress);
+  Relaxation(discrete, freedom, points, middles).run(sweeps, progress);
 }
 
 }  // namespace signorini

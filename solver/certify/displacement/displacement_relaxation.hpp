@@ -22,7 +22,7 @@ struct NodeFreedom {
 /// the middles of the edges, by relax_stars(); inside each macro-element it follows as it costs least.
 ///
 /// `freedom`: of the points, then of the edges. `points`, `middles`: a column each.
-void relax_displacement(const Discretization& problem, const std::vector<NodeFreedom>& freedom, int sweeps,
+void relax_displacement(const Discretization& discrete, const std::vector<NodeFreedom>& freedom, int sweeps,
                         Eigen::MatrixXd& points, Eigen::MatrixXd& middles, Progress& progress);
 
 }  // namespace signorini

@@ -49,13 +49,13 @@ using Modulus = Eigen::Matrix2d (*)(const Law<1>&);
 /// at the corners times the hats.
 class Curvature {
  public:
-  Curvature(const Discretization& problem, Modulus of) : mesh_(problem.mesh) {
-    if (problem.element.has_constant_material())
+  Curvature(const Discretization& discrete, Modulus of) : mesh_(discrete.mesh) {
+    if (discrete.element.has_constant_material())
       products_.emplace_back([](const Point&) { return 1.; });
     else
       for (int z = 0; z < 3; ++z)
         products_.emplace_back([z](const Point& x) { return triangle_basis(1, x)[z]; });
-    take_moduli(problem, of);
+    take_moduli(discrete, of);
   }
 
   void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
@@ -91,12 +91,12 @@ class Curvature {
     return moduli_.col(t).segment<3>(3 * static_cast<Eigen::Index>(i));
   }
 
-  void take_moduli(const Discretization& problem, Modulus of) {
-    LawField<1> law(problem.problem.material);
+  void take_moduli(const Discretization& discrete, Modulus of) {
+    LawField<1> law(discrete.problem.material);
     const bool constant = products_.size() == 1;
     const auto kept = [](const Eigen::Matrix2d& e) { return Eigen::Vector3d(e(0, 0), e(0, 1), e(1, 1)); };
-    moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, problem.triangles());
-    for (int t = 0; t < problem.triangles(); ++t) {
+    moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, discrete.triangles());
+    for (int t = 0; t < discrete.triangles(); ++t) {
       const AffineMap map(mesh_.corners(t));
       const Eigen::Matrix2d inverse = map.jacobian.inverse();
       const auto at = [&](const Point& x) -> Eigen::Matrix2d {
@@ -128,9 +128,9 @@ Eigen::Matrix<double, 6, 3> products_with_hats() {
   return products;
 }
 
-void add_work_of_traction(const Discretization& problem, Eigen::VectorXd& work) {
-  const Mesh& mesh = problem.mesh;
-  const TractionField& traction = problem.traction;
+void add_work_of_traction(const Discretization& discrete, Eigen::VectorXd& work) {
+  const Mesh& mesh = discrete.mesh;
+  const TractionField& traction = discrete.traction;
   const Eigen::Index points = static_cast<Eigen::Index>(mesh.points.size());
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (!traction.acts_on(edge)) continue;
@@ -146,22 +146,22 @@ void add_work_of_traction(const Discretization& problem, Eigen::VectorXd& work) 
 
 }  // namespace
 
-Eigen::VectorXd work_of_loads(const Discretization& problem) {
-  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
+Eigen::VectorXd work_of_loads(const Discretization& discrete) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(discrete.mesh));
   const Eigen::Matrix<double, 6, 3> hats = products_with_hats();
-  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
-    const double twice_area = AffineMap(problem.mesh.corners(t)).determinant;
-    const Local own = twice_area * hats * discrete_load<1>(problem, t).transpose();
+  for_triangles(discrete.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const double twice_area = AffineMap(discrete.mesh.corners(t)).determinant;
+    const Local own = twice_area * hats * discrete_load<1>(discrete, t).transpose();
     for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
   });
-  add_work_of_traction(problem, work);
+  add_work_of_traction(discrete, work);
   return work;
 }
 
-Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField& tau) {
-  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(problem.mesh));
-  for_triangles(problem.mesh, [&](int t, const std::array<int, 6>& nodes) {
-    const AffineMap map(problem.mesh.corners(t));
+Eigen::VectorXd work_of_stress(const Discretization& discrete, const StressField& tau) {
+  Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(discrete.mesh));
+  for_triangles(discrete.mesh, [&](int t, const std::array<int, 6>& nodes) {
+    const AffineMap map(discrete.mesh.corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
     const StressAtPoints stress = map.determinant * inverse * tau(t);
     Local own = Local::Zero();
@@ -200,9 +200,9 @@ Eigen::Matrix2d turned_compliance_of(const Law<1>& law) {
   return law.stiffness / law.stiffness.determinant();
 }
 
-void relax(const Discretization& problem, Modulus modulus, QuadraticValues& values,
+void relax(const Discretization& discrete, Modulus modulus, QuadraticValues& values,
            const Eigen::VectorXd& work, int steps, Progress& progress) {
-  const Curvature curvature(problem, modulus);
+  const Curvature curvature(discrete, modulus);
   const Eigen::Index points = values.points.size();
   Eigen::VectorXd v(work.size());
   v << values.points, values.middles;

@@ -22,14 +22,14 @@ struct QuadraticValues {
 
 /// The work on each of the quadratic functions, first of the points, then of the middles: of load and
 /// traction, (Πf, φ) + <t, φ>, and of a stress, (τ, ∇φ).
-Eigen::VectorXd work_of_loads(const Discretization& problem);
-Eigen::VectorXd work_of_stress(const Discretization& problem, const StressField& tau);
+Eigen::VectorXd work_of_loads(const Discretization& discrete);
+Eigen::VectorXd work_of_stress(const Discretization& discrete, const StressField& tau);
 
 /// The steps after which hardly anything is left of what an average has for error: that oscillates from
 /// triangle to triangle. The bound of the nonconforming scheme falls by 40 %.
 constexpr int kStepsFromAverage = 3;
 
-/// E of a law, and for potentials the tensor M with ‖∇Ψ‖_M = ‖curl Ψ‖_C: that is E / det E.
+/// E of a law, and for stream functions the tensor M with ‖∇Ψ‖_M = ‖curl Ψ‖_C: that is E / det E.
 Eigen::Matrix2d stiffness_of(const Law<1>& law);
 Eigen::Matrix2d turned_compliance_of(const Law<1>& law);
 
@@ -39,7 +39,7 @@ Eigen::Matrix2d turned_compliance_of(const Law<1>& law);
 /// A modulus counts with its linear part on each triangle: linear_modulus(). With its value in the centroid
 /// only, v is not one order better than u_h: the bound of the conforming scheme would double where the
 /// modulus varies.
-void relax(const Discretization& problem, Eigen::Matrix2d (*modulus)(const Law<1>&), QuadraticValues& v,
+void relax(const Discretization& discrete, Eigen::Matrix2d (*modulus)(const Law<1>&), QuadraticValues& v,
            const Eigen::VectorXd& work, int steps, Progress& progress);
 
 }  // namespace signorini

@@ -11,11 +11,11 @@ namespace signorini {
 namespace {
 
 /// Column t: ∫ φ_z (σ_xy − σ_yx) over triangle t for its three corners z.
-Eigen::Matrix3Xd asymmetry(const Discretization& problem, const Eigen::MatrixXd& stress) {
-  const StressValues<2> values(problem.spaces(), triangle_points());
-  Eigen::Matrix3Xd moments = Eigen::Matrix3Xd::Zero(3, problem.triangles());
-  for (int t = 0; t < problem.triangles(); ++t) {
-    const AffineMap map(problem.mesh.corners(t));
+Eigen::Matrix3Xd asymmetry(const Discretization& discrete, const Eigen::MatrixXd& stress) {
+  const StressValues<2> values(discrete.spaces(), triangle_points());
+  Eigen::Matrix3Xd moments = Eigen::Matrix3Xd::Zero(3, discrete.triangles());
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    const AffineMap map(discrete.mesh.corners(t));
     for (int q = 0; q < TriangleRule::size; ++q) {
       const Tensor<2> sigma = values(q, map, stress.col(t));
       moments.col(t) += triangle_rule().weights[q] * map.determinant * (sigma[1] - sigma[2]) *
@@ -46,20 +46,20 @@ int other_side(const Mesh& mesh, int edge, int t) {
 
 }  // namespace
 
-EdgeTractions::EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
+EdgeTractions::EdgeTractions(const Discretization& discrete, const Eigen::MatrixXd& stress,
                              const ContactPressure& pressure)
-    : problem_(problem), given_(problem.traction), tractions_(problem.mesh.edges.size()) {
+    : discrete_(discrete), given_(discrete.traction), tractions_(discrete.mesh.edges.size()) {
   take_from(stress);
   change_pressure(pressure);
-  Eigen::Matrix3Xd moments = asymmetry(problem, stress);
-  if (problem.spaces().leaves_couples()) take_couples(moments);
+  Eigen::Matrix3Xd moments = asymmetry(discrete, stress);
+  if (discrete.spaces().leaves_couples()) take_couples(moments);
   balance(moments);
 }
 
 Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
-  const int edge = problem_.mesh.triangle_edges[t][e];
+  const int edge = discrete_.mesh.triangle_edges[t][e];
   Eigen::Matrix2d ends = tractions_[edge];
-  if (problem_.mesh.edge_triangles[edge][0] != t) ends = -ends.rowwise().reverse().eval();
+  if (discrete_.mesh.edge_triangles[edge][0] != t) ends = -ends.rowwise().reverse().eval();
   Eigen::Matrix<double, 2, 3> all = linear_along_edge(ends);
   if (!given_.acts_on(edge)) return all;
   for (int c = 0; c < 2; ++c) {
@@ -71,8 +71,8 @@ Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
 }
 
 void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
-  const Mesh& mesh = problem_.mesh;
-  const int order = problem_.spaces().order;
+  const Mesh& mesh = discrete_.mesh;
+  const int order = discrete_.spaces().order;
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
     for (int c = 0; c < 2; ++c) {
@@ -86,8 +86,8 @@ void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
 
 /// The couples as the rotation took them, and the traction's linear part, whose couple is among them.
 void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
-  const Mesh& mesh = problem_.mesh;
-  for (int t = 0; t < problem_.triangles(); ++t) moments.col(t).array() -= problem_.couples[t] / 3;
+  const Mesh& mesh = discrete_.mesh;
+  for (int t = 0; t < discrete_.triangles(); ++t) moments.col(t).array() -= discrete_.couples[t] / 3;
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (!given_.acts_on(edge)) continue;
     const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
@@ -103,9 +103,9 @@ void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
   }
 }
 
-/// The flux of the potential around each point balances the moments of every triangle there.
+/// The flux of the stream function around each point balances the moments of every triangle there.
 void EdgeTractions::balance(const Eigen::Matrix3Xd& moments) {
-  const auto triangles = triangles_at_points(problem_.mesh);
+  const auto triangles = triangles_at_points(discrete_.mesh);
   for (int point = 0; point < static_cast<int>(triangles.size()); ++point)
     turn_around(point, triangles[point], moments);
 }
@@ -113,7 +113,7 @@ void EdgeTractions::balance(const Eigen::Matrix3Xd& moments) {
 void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
                                 const Eigen::Matrix3Xd& moments) {
   if (triangles.empty()) return;
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   int start = triangles[0];
   for (const int t : triangles)
     if (other_side(mesh, entrance(mesh, t, point), t) < 0) start = t;
@@ -170,7 +170,7 @@ Eigen::Matrix2d EdgeTractions::of_turn(const Vector& way) {
 }
 
 void EdgeTractions::add(const Eigen::Matrix3Xd& airy, const Eigen::VectorXd& turns) {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   const auto at_point = [&](int point) {
     return ContactPressure::Airy{airy(0, point), airy.col(point).tail<2>()};
   };
@@ -184,14 +184,14 @@ void EdgeTractions::add(const Eigen::Matrix3Xd& airy, const Eigen::VectorXd& tur
 
 /// On Γ_C the traction changes by −(p* − p_h) d, and by what lacks.
 void EdgeTractions::change_pressure(const ContactPressure& pressure) {
-  const Mesh& mesh = problem_.mesh;
+  const Mesh& mesh = discrete_.mesh;
   std::vector<bool> on_contact(mesh.edges.size(), false);
-  for (int i = 0; i < static_cast<int>(problem_.clearance.edges.size()); ++i) {
-    const int edge = problem_.clearance.edges[i].edge;
+  for (int i = 0; i < static_cast<int>(discrete_.clearance.edges.size()); ++i) {
+    const int edge = discrete_.clearance.edges[i].edge;
     on_contact[edge] = true;
     const auto [first, second] = pressure.changes[i];
     const bool forward = domain_on_the_left(mesh, edge)[0] == mesh.edges[edge][0];
-    const Vector d = problem_.clearance.edges[i].direction;
+    const Vector d = discrete_.clearance.edges[i].direction;
     at(edge).col(0) -= (forward ? first : second) * d;
     at(edge).col(1) -= (forward ? second : first) * d;
   }

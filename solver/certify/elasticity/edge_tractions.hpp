@@ -18,18 +18,18 @@ inline Eigen::Matrix<double, 2, 3> linear_along_edge(const Eigen::Matrix2d& ends
 /// triangle in equilibrium of forces and of moments under the discrete load, so that a symmetric stress with
 /// these tractions exists.
 ///
-/// They are those of σ_h and two changes, each the derivative along the edges of a vector potential and so
-/// free of force: the one that turns the pressure into p* (an Airy function near Γ_C), and one that spreads
-/// the asymmetry. as(σ_h) and the couples of the loads are orthogonal to every hat function φ_z, therefore
-/// normal bubbles on the edges around z exist whose fluxes balance them in each triangle at z (the flux
-/// equilibration of Braess and Schöberl 2008, applied to the rotation).
+/// They are those of σ_h and two changes, each the derivative along the edges of a stream function with two
+/// components and so free of force: the one that turns the pressure into p* (an Airy function near Γ_C), and
+/// one that spreads the asymmetry. as(σ_h) and the couples of the loads are orthogonal to every hat function
+/// φ_z, therefore normal bubbles on the edges around z exist whose fluxes balance them in each triangle at z
+/// (the flux equilibration of Braess and Schöberl 2008, applied to the rotation).
 ///
 /// Into the body the Airy function is cubic along each edge, with a linear normal derivative (the reduced
 /// element of Hsieh, Clough and Tocher): its traction is the derivative of w = (∂_y ψ, −∂_x ψ), w·n = ψ',
 /// w·t = −∂_n ψ.
 class EdgeTractions {
  public:
-  EdgeTractions(const Discretization& problem, const Eigen::MatrixXd& stress,
+  EdgeTractions(const Discretization& discrete, const Eigen::MatrixXd& stress,
                 const ContactPressure& pressure);
 
   /// The traction on a triangle's local edge e from outside, per length: column 0 at corner e + 1, column 1
@@ -58,7 +58,7 @@ class EdgeTractions {
   void balance(const Eigen::Matrix3Xd& moments);
   void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& moments);
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const TractionField& given_;
   /// Of each edge, seen from its first triangle, at the ends in the direction in which that triangle lies on
   /// the left.

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "certify/data/balanced_load.hpp"
-#include "certify/elasticity/macro_data.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
@@ -17,33 +17,36 @@ int degree_of_fields(bool lifted) {
 
 }  // namespace
 
-ElasticSums::ElasticSums(const Discretization& problem, const Solution& solution,
+ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
                          const AdmissibleDisplacement& v, const EdgeTractions& tractions)
-    : problem_(problem),
+    : discrete_(discrete),
       solution_(solution),
       v_(v),
       tractions_(tractions),
-      has_load_(problem.problem.body.size() > 0),
-      shapes_(problem) {}
+      has_load_(discrete.problem.body.size() > 0),
+      shapes_(discrete) {}
 
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
-  return {macro_data(problem_, tractions_, t, map), solution_.stress.col(t), v_.on<2>(t).reshaped(), {}};
+  return {johnson_mercier_data(discrete_, tractions_, t, map),
+          solution_.stress.col(t),
+          v_.on<2>(t).reshaped(),
+          {}};
 }
 
 /// The operators of the triangle's shape, or null.
-const MacroNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
+const JohnsonMercierNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
   Shape& shape = shapes_(t, [] { return Shape(); });
   if (++shape.seen == kOften)
-    shape.norms = std::make_unique<const MacroNorms>(macro_rule(problem_.spaces(), 6), map,
-                                                     SymmetricLaw(law(map({0, 0})).compliance));
+    shape.norms = std::make_unique<const JohnsonMercierNorms>(johnson_mercier_rule(discrete_.spaces(), 6),
+                                                              map, SymmetricLaw(law(map({0, 0})).compliance));
   return shape.norms.get();
 }
 
 /// The strains of what is lifted into the triangle.
 std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap& map,
-                                                         const MacroRule& rule) const {
+                                                         const JohnsonMercierRule& rule) const {
   std::vector<Eigen::Vector3d> strains;
-  for (const MacroElement::Place& place : rule.places) {
+  for (const JohnsonMercier::Place& place : rule.places) {
     Eigen::Vector2d value = Eigen::Vector2d::Zero();
     Tensor<2> slope = Tensor<2>::Zero();
     v_.add_lifts<2>(t, place.point, map.jacobian.inverse(), value, slope);
@@ -54,17 +57,17 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
 
 /// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does
 /// no more work on the rest of v than the product of their norms.
-void ElasticSums::add_work_of_load(int t, const AffineMap& map, const MacroRule& rule, const Given& given,
-                                   const Inner& inner, TriangleSums& sums) const {
+void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
+                                   const Given& given, const Inner& inner, TriangleSums& sums) const {
   if (!has_load_) return;
-  const ProjectedLoad& load = problem_.body[t];
-  const Quadratic<2> quadratic = quadratic_load<2>(problem_, t);
+  const ProjectedLoad& load = discrete_.body[t];
+  const Quadratic<2> quadratic = quadratic_load<2>(discrete_, t);
   double work = 0, rest_square = 0;
   for (int q = 0; q < rule.size(); ++q) {
-    const MacroRule::Values& at = rule.values[q];
+    const JohnsonMercierRule::Values& at = rule.values[q];
     const double weight = rule.places[q].weight * map.determinant;
-    Eigen::Vector2d rest =
-        inner.reshaped(2, MacroRule::kInner) * rule.places[q].displacement_basis.tail<MacroRule::kInner>();
+    Eigen::Vector2d rest = inner.reshaped(2, JohnsonMercierRule::kInner) *
+                           rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
     if (!given.lifted.empty()) {
       Tensor<2> slope = Tensor<2>::Zero();
       v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
@@ -80,15 +83,15 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
                                     TriangleSums& sums) const {
   const AdmissibleDisplacement::LiftRest rest = v_.rest_of_lifts(t);
   if (rest.slope == 0) return;
-  const ProjectedLoad& load = problem_.body[t];
+  const ProjectedLoad& load = discrete_.body[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
   sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                        rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
   sums.add_unknown_strain(zeta);
 }
 
-TriangleSums ElasticSums::by_norms(const MacroNorms& norms, const Given& given, Inner& inner) const {
-  constexpr int most = MacroElement::kData + kMaxLocal + 12;
+TriangleSums ElasticSums::by_norms(const JohnsonMercierNorms& norms, const Given& given, Inner& inner) const {
+  constexpr int most = JohnsonMercier::kData + kMaxLocal + 12;
   Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms.gap.cols());
   z << given.data, given.stress, given.displacement;
   const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
@@ -106,9 +109,9 @@ TriangleSums ElasticSums::by_norms(const MacroNorms& norms, const Given& given, 
   return sums;
 }
 
-TriangleSums ElasticSums::by_points(const AffineMap& map, const MacroRule& rule, Given given,
+TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRule& rule, Given given,
                                     double error_of_whole, LawField<2>& law, Inner& inner) const {
-  const MacroValues<1> values(rule, map, given, laws_at(problem_, rule, map, law));
+  const JohnsonMercierOperators<1> values(rule, map, given, laws_at(discrete_, rule, map, law));
   inner = values.inner;
   TriangleSums sums;
   sums.gap = values.gap.squaredNorm();
@@ -130,15 +133,16 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const MacroRule& rule,
 }
 
 TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
-  const AffineMap map(problem_.mesh.corners(t));
+  const AffineMap map(discrete_.mesh.corners(t));
   Given given = given_on(t, map);
-  const bool lifted = v_.is_lifted(t), constant_law = problem_.element.has_constant_material();
-  const MacroNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
+  const bool lifted = v_.is_lifted(t), constant_law = discrete_.element.has_constant_material();
+  const JohnsonMercierNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
   const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
   const std::vector<LawPiece> pieces = laws.cut(t);
-  if (!pieces.empty()) rule_of_pieces_.fill(problem_.spaces(), pieces, of_fields, laws.tolerance());
-  const MacroRule& rule = pieces.empty() ? macro_rule(problem_.spaces(), degree) : rule_of_pieces_;
+  if (!pieces.empty()) rule_of_pieces_.fill(discrete_.spaces(), pieces, of_fields, laws.tolerance());
+  const JohnsonMercierRule& rule =
+      pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
   if (lifted) given.lifted = lifted_strains(t, map, rule);
   Inner inner;
   TriangleSums sums =

@@ -3,15 +3,15 @@
 #include <Eigen/Cholesky>
 
 #include "certify/displacement/star_relaxation.hpp"
-#include "certify/elasticity/macro_data.hpp"
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "fem/per_shape.hpp"
 
 namespace signorini {
 namespace {
 
 constexpr int kLinear = 12;  ///< tractions at both ends of three edges, x and y in turns
-constexpr int kFree = MacroElement::kFree, kMacroData = MacroElement::kData, kRows = kLinear + kFree;
+constexpr int kFree = JohnsonMercier::kFree, kMacroData = JohnsonMercier::kData, kRows = kLinear + kFree;
 
 /// The data of the macro-element that has linear tractions, by those at the ends of its edges.
 Eigen::Matrix<double, kMacroData, kLinear> data_of_linear() {
@@ -32,20 +32,21 @@ class TractionProducts {
   using Products = Eigen::Matrix<double, kRows, Eigen::Dynamic, 0, kRows, kFree + kMacroData + kMaxLocal>;
 
   explicit TractionProducts(const Spaces& spaces) {
-    const MacroElement& element = macro_element();
-    const MacroRule& rule = macro_rule(spaces, 6);
-    Eigen::Matrix<double, MacroElement::kStresses, kRows> rows;
+    const JohnsonMercier& element = johnson_mercier();
+    const JohnsonMercierRule& rule = johnson_mercier_rule(spaces, 6);
+    Eigen::Matrix<double, JohnsonMercier::kStresses, kRows> rows;
     rows << element.from_data * data_of_linear(), element.free;
-    Eigen::Matrix<double, MacroElement::kStresses, kFree + kMacroData> columns;
+    Eigen::Matrix<double, JohnsonMercier::kStresses, kFree + kMacroData> columns;
     columns << element.free, element.from_data;
     const auto functions = rule.values.front().stress.cols();
     for (Products& entry : of_entries_) entry.setZero(kRows, kFree + kMacroData + 2 * functions);
     for (int q = 0; q < rule.size(); ++q) {
-      const MacroElement::Place& place = rule.places[q];
+      const JohnsonMercier::Place& place = rule.places[q];
       Eigen::Matrix<double, 3, kRows> left;
-      for (int i = 0; i < kRows; ++i) left.col(i) = MacroElement::stress(place, rows.col(i));
+      for (int i = 0; i < kRows; ++i) left.col(i) = JohnsonMercier::stress(place, rows.col(i));
       Eigen::Matrix<double, 3, Eigen::Dynamic> right(3, kFree + kMacroData + 2 * functions);
-      for (int i = 0; i < kFree + kMacroData; ++i) right.col(i) = MacroElement::stress(place, columns.col(i));
+      for (int i = 0; i < kFree + kMacroData; ++i)
+        right.col(i) = JohnsonMercier::stress(place, columns.col(i));
       for (Eigen::Index a = 0; a < functions; ++a) {
         const Vector tau = rule.values[q].stress.col(a);
         right.middleCols<2>(kFree + kMacroData + 2 * a) << tau.x(), 0, 0, tau.y(), tau.y() / 2, tau.x() / 2;
@@ -121,13 +122,13 @@ struct TractionShape {
 };
 
 /// The stresses without data follow as it costs least.
-TractionShape traction_shape_of(const Discretization& problem, int t, LawField<2>& law) {
-  const auto corners = problem.mesh.corners(t);
+TractionShape traction_shape_of(const Discretization& discrete, int t, LawField<2>& law) {
+  const auto corners = discrete.mesh.corners(t);
   const AffineMap map(corners);
   const Eigen::Matrix3d to_triangle = piola(map);
-  const TractionProducts::Products products = traction_products(problem.spaces())(
+  const TractionProducts::Products products = traction_products(discrete.spaces())(
       map.determinant * to_triangle.transpose() *
-      mean_compliance(map, problem.element.has_constant_material(), law) * to_triangle);
+      mean_compliance(map, discrete.element.has_constant_material(), law) * to_triangle);
   const auto airy = linear_of_airy(map, corners);
   const Eigen::LLT<Eigen::Matrix<double, kFree, kFree>> free(products.bottomLeftCorner<kFree, kFree>());
   const Eigen::Matrix<double, kLinear, kFree> of_free = products.topLeftCorner<kLinear, kFree>();
@@ -139,19 +140,19 @@ TractionShape traction_shape_of(const Discretization& problem, int t, LawField<2
   return {all.leftCols<kMacroData>() * data_of_linear() * airy, all, map.jacobian.inverse()};
 }
 
-TriangleForms forms_of(const Discretization& problem, const Eigen::MatrixXd& stress,
+TriangleForms forms_of(const Discretization& discrete, const Eigen::MatrixXd& stress,
                        const EdgeTractions& tractions, Progress& progress) {
   TriangleForms forms{3, 1, true, {}, {}, {}, {}};
-  forms.matrix_of.reserve(problem.triangles());
-  forms.slopes.reserve(problem.triangles());
-  LawField<2> law(problem.problem.material);
-  PerShape<TractionShape> shapes(problem);
+  forms.matrix_of.reserve(discrete.triangles());
+  forms.slopes.reserve(discrete.triangles());
+  LawField<2> law(discrete.problem.material);
+  PerShape<TractionShape> shapes(discrete);
   Eigen::VectorXd given(kMacroData + stress.rows());
-  for (int t = 0; t < problem.triangles(); ++t) {
+  for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    TractionShape& shape = shapes(t, [&] { return traction_shape_of(problem, t, law); });
+    TractionShape& shape = shapes(t, [&] { return traction_shape_of(discrete, t, law); });
     if (shape.number < 0) shape.number = forms.keep(shape.matrix);
-    given << macro_data(problem, tractions, t, AffineMap(problem.mesh.corners(t))),
+    given << johnson_mercier_data(discrete, tractions, t, AffineMap(discrete.mesh.corners(t))),
         -(shape.to_reference * stress.col(t).reshaped(2, stress.rows() / 2)).reshaped();
     forms.matrix_of.push_back(shape.number);
     forms.slopes.push_back(shape.slope * given);
@@ -160,12 +161,12 @@ TriangleForms forms_of(const Discretization& problem, const Eigen::MatrixXd& str
 }
 
 /// Tractions stay on all of the boundary but Γ_D.
-void hold(const Discretization& problem, TriangleForms& forms) {
-  const Mesh& mesh = problem.mesh;
+void hold(const Discretization& discrete, TriangleForms& forms) {
+  const Mesh& mesh = discrete.mesh;
   forms.held.assign(forms.unknowns(mesh), false);
   std::vector<bool> is_fixed(mesh.edges.size(), false);
   for (const BoundaryPart& part : mesh.boundary)
-    if (condition_on<Fixed>(problem.problem, part.name))
+    if (condition_on<Fixed>(discrete.problem, part.name))
       for (const int edge : part.edges) is_fixed[edge] = true;
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
     if (mesh.edge_triangles[edge][1] >= 0 || is_fixed[edge]) continue;
@@ -177,12 +178,12 @@ void hold(const Discretization& problem, TriangleForms& forms) {
 
 }  // namespace
 
-void relax_tractions(const Discretization& problem, const Eigen::MatrixXd& stress, EdgeTractions& tractions,
+void relax_tractions(const Discretization& discrete, const Eigen::MatrixXd& stress, EdgeTractions& tractions,
                      int sweeps, Progress& progress) {
-  TriangleForms forms = forms_of(problem, stress, tractions, progress);
-  hold(problem, forms);
-  const Eigen::VectorXd x = relax_stars(problem.mesh, forms, sweeps, progress);
-  const auto points = static_cast<Eigen::Index>(problem.mesh.points.size());
+  TriangleForms forms = forms_of(discrete, stress, tractions, progress);
+  hold(discrete, forms);
+  const Eigen::VectorXd x = relax_stars(discrete.mesh, forms, sweeps, progress);
+  const auto points = static_cast<Eigen::Index>(discrete.mesh.points.size());
   tractions.add(x.head(3 * points).reshaped(3, points), x.tail(x.size() - 3 * points));
 }
 

@@ -12,7 +12,7 @@ namespace signorini {
 ///
 /// Without it, σ* takes back the asymmetry of σ_h within the triangles at each point, one point after the
 /// other.
-void relax_tractions(const Discretization& problem, const Eigen::MatrixXd& stress, EdgeTractions& tractions,
+void relax_tractions(const Discretization& discrete, const Eigen::MatrixXd& stress, EdgeTractions& tractions,
                      int sweeps, Progress& progress);
 
 }  // namespace signorini

@@ -49,9 +49,9 @@ MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given,
   }
 }
 
-MembraneSums::MembraneSums(const Discretization& problem, const Eigen::MatrixXd& stress,
+MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress,
                            const AdmissiblePair& pair)
-    : problem_(problem), stress_(stress), pair_(pair), balance_(problem) {}
+    : discrete_(discrete), stress_(stress), pair_(pair), balance_(discrete) {}
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
     : MembraneSums(pairs.problem(), pairs.stress(), pairs.first()) {
@@ -69,7 +69,7 @@ const MembraneSums::Rule& MembraneSums::rule_of_degree(int order) {
 }
 
 const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
-  const int order = problem_.spaces().order;
+  const int order = discrete_.spaces().order;
   if (degree <= 5) return rule_of_degree<5>(order);
   if (degree <= 6) return rule_of_degree<6>(order);
   if (degree <= 8) return rule_of_degree<8>(order);
@@ -95,13 +95,13 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
     std::vector<WeightedPoint> points;
     for (const auto& [point, weight] : signorini::rule_of_degree(degree))
       points.push_back({piece.place(point), piece.place.share * weight});
-    integrate(t, Rule(problem_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields),
+    integrate(t, Rule(discrete_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields),
               law, sums);
   }
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
-  const ProjectedLoad& load = problem_.body[t];
-  const double area = AffineMap(problem_.mesh.corners(t)).determinant / 2;
+  const ProjectedLoad& load = discrete_.body[t];
+  const double area = AffineMap(discrete_.mesh.corners(t)).determinant / 2;
   sums.energy_slack += load.uncertain_work * pair_.v.largest_on(t);
   const AdmissibleDisplacement::LiftRest rest = pair_.v.rest_of_lifts(t);
   if (rest.slope > 0) {
@@ -115,17 +115,17 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
 
 void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law,
                              TriangleSums& sums) const {
-  const AffineMap map(problem_.mesh.corners(t));
+  const AffineMap map(discrete_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
-  const Quadratic<1> v = pair_.v.on<1>(t), potential = pair_.potential_on(problem_.mesh, t);
-  Quadratic<1> w = Quadratic<1>::Zero(), potential_of_tau = Quadratic<1>::Zero();
+  const Quadratic<1> v = pair_.v.on<1>(t), stream_function = pair_.stream_function_on(discrete_.mesh, t);
+  Quadratic<1> w = Quadratic<1>::Zero(), stream_function_of_tau = Quadratic<1>::Zero();
   if (second_) {
     w = v - second_->v.on<1>(t);
-    potential_of_tau = potential - second_->potential_on(problem_.mesh, t);
+    stream_function_of_tau = stream_function - second_->stream_function_on(discrete_.mesh, t);
   }
-  const Quadratic<1> acting = quadratic_load<1>(problem_, t);
+  const Quadratic<1> acting = quadratic_load<1>(discrete_, t);
   const std::optional<QuadraticBalance::Data> balance = balance_(t);
-  const bool curled = !potential.isZero(0), lifted = pair_.v.is_lifted(t);
+  const bool curled = !stream_function.isZero(0), lifted = pair_.v.is_lifted(t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
     const auto& [reference, share] = rule.points[q];
@@ -140,7 +140,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
       lifted_square += weight * (value[0] - quadratic) * (value[0] - quadratic);
     }
     Tensor<1> correction = Tensor<1>::Zero();
-    if (curled) correction = curl(inverse, potential * rule.gradients[q].transpose());
+    if (curled) correction = curl(inverse, stream_function * rule.gradients[q].transpose());
     if (change_) correction += rule.stress(q, map, change_->col(t));
     if (balance) correction += map.jacobian * (rule.balance[q] * *balance) / map.determinant;
     const Tensor<1> direct_gap = compliance * sigma - slope, gap = direct_gap + compliance * correction;
@@ -158,7 +158,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     if (second_) {
       const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),
                       moved = stiffness * strain,
-                      tau = curl(inverse, potential_of_tau * rule.gradients[q].transpose());
+                      tau = curl(inverse, stream_function_of_tau * rule.gradients[q].transpose());
       const double of_moved = weight * strain.dot(moved);
       sums.span += weight * (moved + tau).dot(compliance * (moved + tau));
       sums.along += weight * (moved + tau).dot(compliance * correction);
@@ -169,7 +169,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     sums.slack += 2 * error * all_fields;
     sums.energy_slack += error * of_strain;
   }
-  const ProjectedLoad& body = problem_.body[t];
+  const ProjectedLoad& body = discrete_.body[t];
   sums.energy_slack += body.rest * std::sqrt(lifted_square);
 }
 

@@ -58,35 +58,35 @@ Eigen::Matrix<double, kBalanceData, kBalanceData> functions_of_data() {
 }  // namespace
 
 bool QuadraticBalance::is_needed() const {
-  if (problem_.body.varies()) return true;
-  for (int edge = 0; edge < static_cast<int>(problem_.mesh.edges.size()); ++edge)
-    if (problem_.traction.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
+  if (discrete_.body.varies()) return true;
+  for (int edge = 0; edge < static_cast<int>(discrete_.mesh.edges.size()); ++edge)
+    if (discrete_.traction.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
   return false;
 }
 
 Eigen::Vector3d QuadraticBalance::lacking_on(int edge) const {
-  const auto own = [&](double s) { return problem_.traction(edge, 0, s); };
+  const auto own = [&](double s) { return discrete_.traction(edge, 0, s); };
   const Eigen::Vector3d all = projection_at_nodes(2, own),
-                        lacking = all - projection_at_nodes(problem_.spaces().order, own);
+                        lacking = all - projection_at_nodes(discrete_.spaces().order, own);
   return lacking.norm() <= kBalanceRounding * all.norm() ? Eigen::Vector3d::Zero() : lacking;
 }
 
 std::optional<QuadraticBalance::Data> QuadraticBalance::operator()(int t) const {
-  const int order = problem_.spaces().order;
-  const Mesh& mesh = problem_.mesh;
-  const Quadratic<1> balanced = balanced_load<1>(problem_, t);
+  const int order = discrete_.spaces().order;
+  const Mesh& mesh = discrete_.mesh;
+  const Quadratic<1> balanced = balanced_load<1>(discrete_, t);
   const double twice_area = AffineMap(mesh.corners(t)).determinant;
   Quadratic<1> lacking = balanced;
   if (order == 0)
     lacking.array() -= balanced.rightCols<3>().mean();
   else
-    lacking -= at_nodes<1>(discrete_load<1>(problem_, t));
+    lacking -= at_nodes<1>(discrete_load<1>(discrete_, t));
   if (lacking.norm() <= kBalanceRounding * balanced.norm()) lacking.setZero();
   Data data = Data::Zero();
   data.tail<6>() = -twice_area * lacking.transpose();
   for (int e = 0; e < 3; ++e) {
     const int edge = mesh.triangle_edges[t][e];
-    if (!problem_.traction.acts_on(edge)) continue;
+    if (!discrete_.traction.acts_on(edge)) continue;
     Eigen::Vector3d own = mesh.length(edge) * lacking_on(edge);
     if (mesh.triangles[t][(e + 1) % 3] != mesh.edges[edge][0]) std::swap(own[0], own[1]);
     data.segment<3>(3 * e) = own;

@@ -13,7 +13,7 @@ namespace signorini {
 ///     div τ = Π_h f − Πf,   τn = Πt − Π_h t on Γ_F,   τn = 0 on the other edges.
 class QuadraticBalance {
  public:
-  explicit QuadraticBalance(const Discretization& problem) : problem_(problem) {}
+  explicit QuadraticBalance(const Discretization& discrete) : discrete_(discrete) {}
 
   /// τn |e| at both ends and in the middle of edge 0, 1, 2, and the divergence, times det J, at the nodes of
   /// P2.
@@ -37,7 +37,7 @@ class QuadraticBalance {
   /// τn at both ends and in the middle of an edge of Γ_F.
   Eigen::Vector3d lacking_on(int edge) const;
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
 };
 
 }  // namespace signorini

@@ -16,19 +16,19 @@ constexpr double kHardlyPatch = 0.1;
 
 using PointSet = std::vector<bool>;
 
-double force_moved(const Discretization& problem, const ContactPressure& pressure, int i) {
+double force_moved(const Discretization& discrete, const ContactPressure& pressure, int i) {
   const auto& [first, second] = pressure.changes[i];
-  return problem.mesh.length(problem.clearance.edges[i].edge) * std::max(std::abs(first), std::abs(second));
+  return discrete.mesh.length(discrete.clearance.edges[i].edge) * std::max(std::abs(first), std::abs(second));
 }
 
-PointSet points_with_changes(const Discretization& problem, const ContactPressure& pressure) {
+PointSet points_with_changes(const Discretization& discrete, const ContactPressure& pressure) {
   const int edges = static_cast<int>(pressure.changes.size());
   double most = 0;
-  for (int i = 0; i < edges; ++i) most = std::max(most, force_moved(problem, pressure, i));
-  PointSet points(problem.mesh.points.size(), false);
+  for (int i = 0; i < edges; ++i) most = std::max(most, force_moved(discrete, pressure, i));
+  PointSet points(discrete.mesh.points.size(), false);
   for (int i = 0; i < edges; ++i)
-    if (force_moved(problem, pressure, i) > kHardlyPatch * most)
-      for (const int point : problem.mesh.edges[problem.clearance.edges[i].edge]) points[point] = true;
+    if (force_moved(discrete, pressure, i) > kHardlyPatch * most)
+      for (const int point : discrete.mesh.edges[discrete.clearance.edges[i].edge]) points[point] = true;
   return points;
 }
 
@@ -52,12 +52,12 @@ PointSet points_on_contact(const Problem& problem, const Mesh& mesh) {
 }
 
 /// The triangles `all` of the whole mesh, those of the core cut.
-Patch make_patch(const Discretization& problem, std::vector<int> all, const std::vector<int>& core) {
-  Submesh part(problem.mesh, all);
+Patch make_patch(const Discretization& discrete, std::vector<int> all, const std::vector<int>& core) {
+  Submesh part(discrete.mesh, all);
   Mesh mesh = with_longest_edges_first(std::move(part.mesh));
   for (int cut = 0; cut < kPatchCuts; ++cut) {
     std::vector<int> marked, parents;
-    for (const int t : triangles_at(mesh, points_on_contact(problem.problem, mesh)))
+    for (const int t : triangles_at(mesh, points_on_contact(discrete.problem, mesh)))
       if (std::ranges::binary_search(core, all[t])) marked.push_back(t);
     mesh = bisect(mesh, marked, parents);
     for (int& parent : parents) parent = all[parent];
@@ -68,10 +68,10 @@ Patch make_patch(const Discretization& problem, std::vector<int> all, const std:
 
 }  // namespace
 
-std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
+std::vector<Patch> patches_where_pressure_changes(const Discretization& discrete,
                                                   const ContactPressure& pressure) {
-  const Mesh& whole = problem.mesh;
-  PointSet points = points_with_changes(problem, pressure);
+  const Mesh& whole = discrete.mesh;
+  PointSet points = points_with_changes(discrete, pressure);
   const std::vector<int> core = triangles_at(whole, points);
   if (core.empty()) return {};
   std::vector<int> layers = core;
@@ -84,7 +84,7 @@ std::vector<Patch> patches_where_pressure_changes(const Discretization& problem,
   for (std::vector<int>& piece : bodies(Submesh(whole, layers).mesh)) {
     for (int& t : piece) t = layers[t];
     std::ranges::sort(piece);
-    patches.push_back(make_patch(problem, std::move(piece), core));
+    patches.push_back(make_patch(discrete, std::move(piece), core));
   }
   return patches;
 }

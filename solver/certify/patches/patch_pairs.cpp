@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "certify/displacement/relaxation.hpp"
-#include "certify/membrane/least_potential.hpp"
+#include "certify/membrane/stream_function_minimization.hpp"
 
 namespace signorini {
 namespace {
@@ -49,7 +49,8 @@ Traction traction_on_cut(const Discretization& whole, const Eigen::MatrixXd& str
     const Point x = mesh.points[a] + s * (mesh.points[b] - mesh.points[a]);
     const Point reference = inverse * (x - map.origin);
     const Vector sigma = whole.spaces().row.values(map, reference) * stress.col(t);
-    const Eigen::RowVector2d rise = pair.potential_on(mesh, t) * quadratic_gradients(reference).transpose();
+    const Eigen::RowVector2d rise =
+        pair.stream_function_on(mesh, t) * quadratic_gradients(reference).transpose();
     return normal.dot(sigma + curl(inverse, rise));
   })};
 }
@@ -90,7 +91,7 @@ AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
   AdmissiblePair pair{{held_.problem(), held_.solution(), held_.coupling(), progress},
                       {loaded_.problem(), loaded_.solution().stress, loaded_.clearance()}};
   pair.v.relax(work_of_loads(held_.problem()), kStepsFromAverage, progress);
-  minimize_potential(loaded_.problem(), pair.v, loaded_.clearance(), pair.pressure, progress);
+  minimize_stream_function(loaded_.problem(), pair.v, loaded_.clearance(), pair.pressure, progress);
   return pair;
 }
 
@@ -110,7 +111,7 @@ AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
                       gradient<1>(inverse, own * quadratic_gradients()[q].transpose());
     return stress;
   };
-  // σ* − σ_h without the potential.
+  // σ* − σ_h without the stream function.
   const auto change = [&](int t) {
     const AffineMap map(mesh.corners(t));
     StressAtPoints stress;
@@ -119,10 +120,10 @@ AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
   };
   const auto delta = [&](int t) {
     const Eigen::Matrix2d inverse = AffineMap(mesh.corners(t)).jacobian.inverse();
-    const Quadratic<1> potential = first_.potential_on(mesh, t);
+    const Quadratic<1> stream_function = first_.stream_function_on(mesh, t);
     StressAtPoints stress = change(t);
     for (int q = 0; q < TriangleRule::size; ++q)
-      stress.col(q) += curl(inverse, potential * quadratic_gradients()[q].transpose());
+      stress.col(q) += curl(inverse, stream_function * quadratic_gradients()[q].transpose());
     return stress;
   };
   AdmissiblePair pair = first_;
@@ -130,7 +131,7 @@ AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
       work_of_stress(problem(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
   pair.v.relax(work, steps, progress);
   // σ*₂ = σ* − δ + E ε(v − v₂) would be exact.
-  minimize_potential(
+  minimize_stream_function(
       loaded_.problem(), first_.v, loaded_.clearance(), pair.pressure, progress,
       [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - stress_of(pair.v, t) - change(t); });
   return pair;

@@ -25,10 +25,10 @@ class PatchPairs {
 
   const Patch& patch() const { return patch_; }
   /// With v given on the cut.
-  const Discretization& problem() const { return held_.problem(); }
+  const Discretization& discrete() const { return held_.problem(); }
   const AdmissiblePair& first() const { return first_; }
   const AdmissiblePair& second() const { return second_; }
-  /// A column of coefficients a triangle of the patch: of σ_h, and of σ* − σ_h without the potential.
+  /// A column of coefficients a triangle of the patch: of σ_h, and of σ* − σ_h without the stream function.
   const Eigen::MatrixXd& stress() const { return stress_; }
   const Eigen::MatrixXd& change() const { return change_; }
 

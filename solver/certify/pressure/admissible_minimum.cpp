@@ -15,7 +15,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 constexpr int kSteps = 20;
 /// Pressures that would stop a step within this part of it are kept together.
 constexpr double kTogether = 1e-3;
-/// A constant potential is no stress: where nothing else fixes it, this part of the diagonal does.
+/// A constant stream function is no stress: where nothing else fixes it, this part of the diagonal does.
 constexpr double kRegular = 1e-10;
 /// Below this part of a row's coefficients what elimination leaves is rounding.
 constexpr double kTermRounding = 1e-12;
@@ -132,15 +132,16 @@ class Objective {
 
 }  // namespace
 
-std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, const AdmissibleDisplacement& v,
+std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
+                                               const AdmissibleDisplacement& v,
                                                const Eigen::VectorXd& clearance,
                                                const ContactPressure& pressure, int i,
                                                std::array<LinearForm, 2> changes) {
-  const ContactEdge& contact = problem.clearance.edges[i];
+  const ContactEdge& contact = discrete.clearance.edges[i];
   Eigen::Vector2d rooms = Eigen::Vector2d::Zero();
   for (int q = 0; q < EdgeRule::size; ++q) {
     const double s = edge_rule().points[q];
-    rooms += edge_rule().weights[q] * problem.mesh.length(contact.edge) * std::max(0., v.room(contact, s)) *
+    rooms += edge_rule().weights[q] * discrete.mesh.length(contact.edge) * std::max(0., v.room(contact, s)) *
              Eigen::Vector2d(1 - s, s);
   }
   const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;

@@ -28,7 +28,8 @@ struct MovingPressure {
 /// the pressure steep.
 ///
 /// `clearance`: a value a row of the clearance space.
-std::array<MovingPressure, 2> moving_pressures(const Discretization& problem, const AdmissibleDisplacement& v,
+std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
+                                               const AdmissibleDisplacement& v,
                                                const Eigen::VectorXd& clearance,
                                                const ContactPressure& pressure, int i,
                                                std::array<LinearForm, 2> changes);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "certify/pressure/pressure_chain.hpp"
+#include "certify/pressure/contact_chain.hpp"
 #include "mesh/parts.hpp"
 
 namespace signorini {
@@ -17,9 +17,10 @@ constexpr double kForceRounding = 1e-12;
 constexpr double kNoLack = 100;
 
 /// Ψ at the nodes of a chain, in the direction in which it runs, and its mean over each link.
-struct ChainPotential {
-  ChainPotential(const Chain& given, const AdmissibleChain& chain) : at_nodes(given.size() + 1, 0.) {
-    const Chain& admissible = chain.links();
+struct ChainStreamFunction {
+  ChainStreamFunction(const ContactChain& given, const AdmissibleChain& chain)
+      : at_nodes(given.size() + 1, 0.) {
+    const ContactChain& admissible = chain.links();
     for (std::size_t i = 0; i < given.size(); ++i)
       at_nodes[i + 1] = at_nodes[i] + admissible[i].force() - given[i].force();
     if (chain.is_held(false)) {
@@ -70,54 +71,55 @@ double value_or_zero(const std::unordered_map<int, double>& values, int key) {
 
 }  // namespace
 
-ContactPressure::ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
+ContactPressure::ContactPressure(const Discretization& discrete, const Eigen::MatrixXd& stress,
                                  const Eigen::VectorXd& clearance)
-    : at_ends(problem.clearance.edges.size()), changes(at_ends.size()) {
+    : at_ends(discrete.clearance.edges.size()), changes(at_ends.size()) {
   // Fluxes are forces: what an open chain has is rounding beside them.
   const double largest_flux = stress.cwiseAbs().maxCoeff();
-  for (const Chain& given : pressure_chains(problem, stress)) {
+  for (const ContactChain& given : contact_chains(discrete, stress)) {
     const double scale = kForceRounding * (sum_of_forces(given) + largest_flux);
-    const AdmissibleChain chain = admissible(problem, given, clearance, scale);
-    keep(problem, given, chain.links());
-    if (problem.spaces().components == 2) {
-      add_airy(problem, given, chain, scale);
+    const AdmissibleChain chain = admissible(discrete, given, clearance, scale);
+    keep(discrete, given, chain.links());
+    if (discrete.spaces().components == 2) {
+      add_airy(discrete, given, chain, scale);
       continue;
     }
-    ChainPotential potential(given, chain);
-    if (const double lack = potential.take_lack(chain); std::abs(lack) > kNoLack * scale)
-      lacks.push_back({problem.clearance.edges[given.back().number].edge, std::abs(lack), 0});
-    if (potential.largest() > scale) add_curl(problem, chain.links(), potential.at_nodes, potential.means);
+    ChainStreamFunction stream_function(given, chain);
+    if (const double lack = stream_function.take_lack(chain); std::abs(lack) > kNoLack * scale)
+      lacks.push_back({discrete.clearance.edges[given.back().number].edge, std::abs(lack), 0});
+    if (stream_function.largest() > scale)
+      add_curl(discrete, chain.links(), stream_function.at_nodes, stream_function.means);
   }
 }
 
-Quadratic<1> ContactPressure::potential_on(const Mesh& mesh, int t) const {
+Quadratic<1> ContactPressure::stream_function_on(const Mesh& mesh, int t) const {
   Quadratic<1> values = Quadratic<1>::Zero();
-  if (potential_at_points.empty()) return values;
+  if (stream_function_at_points.empty()) return values;
   for (int k = 0; k < 3; ++k) {
-    values[k] = value_or_zero(potential_at_points, mesh.triangles[t][k]);
-    values[3 + k] = value_or_zero(potential_at_middles, mesh.triangle_edges[t][k]);
+    values[k] = value_or_zero(stream_function_at_points, mesh.triangles[t][k]);
+    values[3 + k] = value_or_zero(stream_function_at_middles, mesh.triangle_edges[t][k]);
   }
   return values;
 }
 
 /// Of an elastic body force and moment must stay. An edge between closed and open is left without pressure
 /// then, because its share would act with a moment, unless the contact is too short to balance it otherwise.
-AdmissibleChain ContactPressure::admissible(const Discretization& problem, const Chain& given,
+AdmissibleChain ContactPressure::admissible(const Discretization& discrete, const ContactChain& given,
                                             const Eigen::VectorXd& clearance, double rounding) {
   using Transition = AdmissibleChain::Transition;
-  const AdmissibleChain loaded(problem, given, clearance, Transition::loaded, AdmissibleChain::kLinear);
-  if (problem.spaces().components == 1) return loaded;
+  const AdmissibleChain loaded(discrete, given, clearance, Transition::loaded, AdmissibleChain::kLinear);
+  if (discrete.spaces().components == 1) return loaded;
   for (const double least_share : {AdmissibleChain::kLinear, AdmissibleChain::kSteep})
     for (const Transition transition : {Transition::free, Transition::loaded}) {
-      AdmissibleChain chain(problem, given, clearance, transition, least_share);
+      AdmissibleChain chain(discrete, given, clearance, transition, least_share);
       if (!chain.has_free_ends() || chain.balance(given, rounding)) return chain;
     }
   // What the balance lacks is what it has, if nothing does better.
   return loaded;
 }
 
-EdgePressure ContactPressure::on(const Discretization& problem, int i) const {
-  const int edge = problem.clearance.edges[i].edge;
+EdgePressure ContactPressure::on(const Discretization& discrete, int i) const {
+  const int edge = discrete.clearance.edges[i].edge;
   const auto found = steep.find(edge);
   return found == steep.end() ? EdgePressure{edge, at_ends[i]} : found->second.pressure;
 }
@@ -127,11 +129,12 @@ double ContactPressure::beyond_linear(int edge) const {
   return found == steep.end() ? 0 : found->second.beyond_linear;
 }
 
-void ContactPressure::keep(const Discretization& problem, const Chain& given, const Chain& admissible) {
+void ContactPressure::keep(const Discretization& discrete, const ContactChain& given,
+                           const ContactChain& admissible) {
   for (std::size_t i = 0; i < given.size(); ++i) {
-    const int edge = problem.clearance.edges[given[i].number].edge;
+    const int edge = discrete.clearance.edges[given[i].number].edge;
     std::array<double, 2> pressure = admissible[i].pressure(), old = given[i].pressure();
-    const bool is_turned = problem.mesh.edges[edge][0] != given[i].begin;
+    const bool is_turned = discrete.mesh.edges[edge][0] != given[i].begin;
     if (is_turned) {
       std::swap(pressure[0], pressure[1]);
       std::swap(old[0], old[1]);
@@ -145,23 +148,23 @@ void ContactPressure::keep(const Discretization& problem, const Chain& given, co
   }
 }
 
-void ContactPressure::add_curl(const Discretization& problem, const Chain& chain,
+void ContactPressure::add_curl(const Discretization& discrete, const ContactChain& chain,
                                const std::vector<double>& at_nodes, const std::vector<double>& means) {
   for (std::size_t i = 0; i < chain.size(); ++i) {
-    const int edge = problem.clearance.edges[chain[i].number].edge;
-    const double sign = domain_on_the_left(problem.mesh, edge)[0] == chain[i].begin ? 1 : -1;
-    potential_at_points[chain[i].begin] = sign * at_nodes[i];
-    potential_at_points[chain[i].end] = sign * at_nodes[i + 1];
+    const int edge = discrete.clearance.edges[chain[i].number].edge;
+    const double sign = domain_on_the_left(discrete.mesh, edge)[0] == chain[i].begin ? 1 : -1;
+    stream_function_at_points[chain[i].begin] = sign * at_nodes[i];
+    stream_function_at_points[chain[i].end] = sign * at_nodes[i + 1];
     // The mean of a quadratic function over the edge is (a + 4 m + b) / 6.
-    potential_at_middles[edge] = sign * (6 * means[i] - at_nodes[i] - at_nodes[i + 1]) / 4;
+    stream_function_at_middles[edge] = sign * (6 * means[i] - at_nodes[i] - at_nodes[i + 1]) / 4;
   }
 }
 
 /// Lets w and ψ vanish where the chain ends freely, by w − (s w(1) + 4 s (1 − s) β n) on its last link.
-void ContactPressure::take_lack(const Discretization& problem, const Chain& links, double sign,
+void ContactPressure::take_lack(const Discretization& discrete, const ContactChain& links, double sign,
                                 std::vector<Vector>& w, std::vector<double>& psi) {
-  const Mesh& mesh = problem.mesh;
-  const int edge = problem.clearance.edges[links.back().number].edge;
+  const Mesh& mesh = discrete.mesh;
+  const int edge = discrete.clearance.edges[links.back().number].edge;
   const double length = links.back().length;
   const Vector n = mesh.outward_normal(edge), force = w.back();
   const double rest = psi.back() - sign * length * n.dot(force) / 2, beta = 1.5 * rest / (sign * length);
@@ -178,19 +181,19 @@ void ContactPressure::take_lack(const Discretization& problem, const Chain& link
 
 /// With w = (∂_y ψ, −∂_x ψ), whose derivative along Γ_C is the change −(p* − p_h) d of the traction, and
 /// ψ' = w·n.
-void ContactPressure::add_airy(const Discretization& problem, const Chain& given,
+void ContactPressure::add_airy(const Discretization& discrete, const ContactChain& given,
                                const AdmissibleChain& chain, double scale) {
-  const Mesh& mesh = problem.mesh;
-  const Chain& links = chain.links();
+  const Mesh& mesh = discrete.mesh;
+  const ContactChain& links = chain.links();
   const std::size_t count = links.size();
   // The domain lies on the left of the chain, or on its right.
-  const int first_edge = problem.clearance.edges[links[0].number].edge;
+  const int first_edge = discrete.clearance.edges[links[0].number].edge;
   const double sign = domain_on_the_left(mesh, first_edge)[0] == links[0].begin ? 1 : -1;
 
   std::vector<Vector> w{Vector::Zero()}, means;
   double largest = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vector d = sign * problem.clearance.edges[links[i].number].direction;
+    const Vector d = sign * discrete.clearance.edges[links[i].number].direction;
     const double change = links[i].force() - given[i].force(),
                  first_half = links[i].forces[0] - given[i].forces[0];
     largest = std::max({largest, std::abs(change), std::abs(first_half)});
@@ -200,7 +203,7 @@ void ContactPressure::add_airy(const Discretization& problem, const Chain& given
   if (largest <= scale) return;
   if (chain.is_held(false)) {
     // It vanishes where the chain ends freely, and where nothing was moved.
-    const Vector d = sign * problem.clearance.edges[links[0].number].direction,
+    const Vector d = sign * discrete.clearance.edges[links[0].number].direction,
                  begin = chain.is_held(true) ? Vector(chain.force_of_support() * d) : Vector(-w.back());
     for (Vector& own : w) own += begin;
     for (Vector& own : means) own += begin;
@@ -208,7 +211,7 @@ void ContactPressure::add_airy(const Discretization& problem, const Chain& given
   std::vector<double> psi{0};
   double length = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vector n = mesh.outward_normal(problem.clearance.edges[links[i].number].edge);
+    const Vector n = mesh.outward_normal(discrete.clearance.edges[links[i].number].edge);
     psi.push_back(psi.back() + sign * links[i].length * n.dot(means[i]));
     length += links[i].length;
   }
@@ -217,7 +220,7 @@ void ContactPressure::add_airy(const Discretization& problem, const Chain& given
     for (double& value : psi) value -= rest;
   }
   if (chain.has_free_ends() && std::max(w.back().norm(), std::abs(psi.back()) / length) > kNoLack * scale)
-    take_lack(problem, links, sign, w, psi);
+    take_lack(discrete, links, sign, w, psi);
   const auto set = [&](int point, std::size_t i) {
     airy_at_points[point] = {psi[i], Vector(-w[i].y(), w[i].x())};
   };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "certify/local_fields.hpp"
-#include "certify/pressure/pressure_chain.hpp"
+#include "certify/pressure/contact_chain.hpp"
 #include "result/solution.hpp"
 
 namespace signorini {
@@ -14,10 +14,10 @@ namespace signorini {
 /// The pressure p* on Γ_C: −σ_hn made nowhere negative, and 0 where the contact is open. The schemes have
 /// that only in the mean over each clearance function; an iteration that its tolerance ended, only nearly.
 ///
-/// p* − p_h is the derivative along Γ_C of a potential Ψ that vanishes where Γ_C ends (but not where Γ_D
-/// begins, whose traction is free), so that a stress without divergence makes the change: for a membrane the
-/// curl of Ψ; for an elastic body Ψ is a vector, along the direction of each edge, and the Airy stress of a
-/// function ψ makes the change, so that moments balance too.
+/// p* − p_h is the derivative along Γ_C of a stream function Ψ that vanishes where Γ_C ends (but not where
+/// Γ_D begins, whose traction is free), so that a stress without divergence makes the change: for a membrane
+/// the curl of Ψ; for an elastic body Ψ is a vector, along the direction of each edge, and the Airy stress of
+/// a function ψ makes the change, so that moments balance too.
 ///
 /// Where a body touches with a single edge, the linear pressure that has the force and the moment of p_h may
 /// be negative at one end. Then p* is steep: linear on a part of the edge next to the other end, with the
@@ -40,14 +40,14 @@ struct ContactPressure {
   };
 
   /// `clearance`: a value a row of the clearance space.
-  ContactPressure(const Discretization& problem, const Eigen::MatrixXd& stress,
+  ContactPressure(const Discretization& discrete, const Eigen::MatrixXd& stress,
                   const Eigen::VectorXd& clearance);
 
   /// Ψ on a triangle.
-  Quadratic<1> potential_on(const Mesh& mesh, int t) const;
+  Quadratic<1> stream_function_on(const Mesh& mesh, int t) const;
 
   /// p* on edge i of the clearance space.
-  EdgePressure on(const Discretization& problem, int i) const;
+  EdgePressure on(const Discretization& discrete, int i) const;
 
   /// ‖p* − p‖ in L2 of an edge of the mesh for the linear p with the same force and moment.
   double beyond_linear(int edge) const;
@@ -64,20 +64,20 @@ struct ContactPressure {
   };
   std::unordered_map<int, Steep> steep;
   /// Ψ, with the domain on the left, at points and at the middles of edges; 0 where it is not named.
-  std::unordered_map<int, double> potential_at_points, potential_at_middles;
+  std::unordered_map<int, double> stream_function_at_points, stream_function_at_middles;
   /// ψ at points, for an elastic body.
   std::unordered_map<int, Airy> airy_at_points;
   std::vector<Lack> lacks;
 
  private:
-  AdmissibleChain admissible(const Discretization& problem, const Chain& given,
+  AdmissibleChain admissible(const Discretization& discrete, const ContactChain& given,
                              const Eigen::VectorXd& clearance, double rounding);
-  void keep(const Discretization& problem, const Chain& given, const Chain& admissible);
-  void add_curl(const Discretization& problem, const Chain& chain, const std::vector<double>& at_nodes,
-                const std::vector<double>& means);
-  void take_lack(const Discretization& problem, const Chain& links, double sign, std::vector<Vector>& w,
-                 std::vector<double>& psi);
-  void add_airy(const Discretization& problem, const Chain& given, const AdmissibleChain& chain,
+  void keep(const Discretization& discrete, const ContactChain& given, const ContactChain& admissible);
+  void add_curl(const Discretization& discrete, const ContactChain& chain,
+                const std::vector<double>& at_nodes, const std::vector<double>& means);
+  void take_lack(const Discretization& discrete, const ContactChain& links, double sign,
+                 std::vector<Vector>& w, std::vector<double>& psi);
+  void add_airy(const Discretization& discrete, const ContactChain& given, const AdmissibleChain& chain,
                 double scale);
 };
 

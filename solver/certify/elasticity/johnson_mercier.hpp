@@ -20,7 +20,7 @@ namespace signorini {
 /// stresses that have neither. Displacements on it are quadratic on each part and continuous (the pair of
 /// Scott and Vogelius, which is stable here): ten nodes, the corners, the middles of the edges, the centroid,
 /// and the middles between corner i and the centroid.
-struct MacroElement {
+struct JohnsonMercier {
   static constexpr int kPieces = 54;  ///< per part, per node of P2, (xx, yy, xy)
   static constexpr int kBubbles = 6;  ///< per edge, m = i, j
   static constexpr int kStresses = kPieces + kBubbles;
@@ -68,6 +68,6 @@ struct MacroElement {
   static Point node(int number);
 };
 
-const MacroElement& macro_element();
+const JohnsonMercier& johnson_mercier();
 
 }  // namespace signorini

@@ -1,4 +1,4 @@
-#include "certify/elasticity/macro_data.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
 
 #include "certify/data/balanced_load.hpp"
 
@@ -11,11 +11,11 @@ Eigen::Matrix<double, 6, 1> traction_data(const AffineMap& map, int e,
   return (map.jacobian.inverse() * traction * length).reshaped();
 }
 
-MacroData macro_data(const Discretization& problem, const EdgeTractions& tractions, int t,
-                     const AffineMap& map) {
-  MacroData data;
+JohnsonMercierData johnson_mercier_data(const Discretization& discrete, const EdgeTractions& tractions, int t,
+                                        const AffineMap& map) {
+  JohnsonMercierData data;
   for (int e = 0; e < 3; ++e) data.segment<6>(6 * e) = traction_data(map, e, tractions.on(t, e));
-  data.tail<12>() = (-map.determinant * map.jacobian.inverse() * balanced_load<2>(problem, t)).reshaped();
+  data.tail<12>() = (-map.determinant * map.jacobian.inverse() * balanced_load<2>(discrete, t)).reshaped();
   return data;
 }
 

@@ -1,4 +1,4 @@
-#include "contact/accelerated_uzawa.hpp"
+#include "contact/mprgp.hpp"
 
 #include <cmath>
 #include <limits>
@@ -251,8 +251,8 @@ class Iterate {
 
 }  // namespace
 
-ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const StateOfBody& body, const Eigen::VectorXd& start) {
+ContactResult mprgp(const ContactComplement& contact, const Mprgp& settings, Progress& progress,
+                    const StateOfBody& body, const Eigen::VectorXd& start) {
   Iterate iterate(contact, start, progress);
   const auto converged = [&] { return iterate.meets(settings.tolerance); };
   int looks = 0;

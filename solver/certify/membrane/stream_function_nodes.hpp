@@ -5,12 +5,12 @@
 namespace signorini {
 
 /// The nodes, points and middles of edges, of the quadratic functions that vanish on Γ_F.
-class PotentialNodes {
+class StreamFunctionNodes {
  public:
-  explicit PotentialNodes(const Discretization& problem);
-  /// Of those that vanish besides beyond a few layers of triangles around where the potential of the pressure
-  /// does not.
-  PotentialNodes(const Discretization& problem, const ContactPressure& pressure);
+  explicit StreamFunctionNodes(const Discretization& discrete);
+  /// Of those that vanish besides beyond a few layers of triangles around where the stream function of the
+  /// pressure does not.
+  StreamFunctionNodes(const Discretization& discrete, const ContactPressure& pressure);
 
   int size() const { return size_; }
   /// The triangles on which not all of the functions vanish.
@@ -23,8 +23,9 @@ class PotentialNodes {
   std::array<int, 6> on(int t) const;
 
  private:
-  /// `layers`: of every point, how many triangles lie between it and where the potential does not vanish.
-  PotentialNodes(const Discretization& problem, const std::vector<int>& layers);
+  /// `layers`: of every point, how many triangles lie between it and where the stream function does not
+  /// vanish.
+  StreamFunctionNodes(const Discretization& discrete, const std::vector<int>& layers);
   void take(int t, const std::vector<int>& layers);
   void leave_out_traction(const Problem& problem);
 

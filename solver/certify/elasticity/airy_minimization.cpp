@@ -1,12 +1,12 @@
-#include "certify/elasticity/least_airy.hpp"
+#include "certify/elasticity/airy_minimization.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <optional>
 #include <unordered_map>
 
-#include "certify/elasticity/macro_data.hpp"
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_data.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/pressure/admissible_minimum.hpp"
 #include "certify/pressure/layers.hpp"
 #include "mesh/parts.hpp"
@@ -43,15 +43,15 @@ Airy airy_of(const Eigen::Vector3d& values) {
 
 class Minimization {
  public:
-  Minimization(const Discretization& problem, const Eigen::MatrixXd& stress, ContactPressure& pressure)
-      : problem_(problem),
-        mesh_(problem.mesh),
+  Minimization(const Discretization& discrete, const Eigen::MatrixXd& stress, ContactPressure& pressure)
+      : discrete_(discrete),
+        mesh_(discrete.mesh),
         pressure_(pressure),
         side_of_edge_(mesh_.edges.size(), -1),
         places_(mesh_.points.size()) {
-    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) add_side(i);
+    for (int i = 0; i < static_cast<int>(discrete.clearance.edges.size()); ++i) add_side(i);
     place_unknowns();
-    assemble(stress, EdgeTractions(problem, stress, pressure));
+    assemble(stress, EdgeTractions(discrete, stress, pressure));
   }
 
   void run(const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance, Progress& progress) {
@@ -59,7 +59,7 @@ class Minimization {
     for (const AirySide& side : sides_) {
       std::array<LinearForm, 2> changes = changes_of(side);
       if (changes[0].empty()) continue;
-      std::ranges::move(moving_pressures(problem_, v, clearance, pressure_, side.number, std::move(changes)),
+      std::ranges::move(moving_pressures(discrete_, v, clearance, pressure_, side.number, std::move(changes)),
                         std::back_inserter(moving));
     }
     const Eigen::VectorXd found =
@@ -81,7 +81,7 @@ class Minimization {
   }
 
   void add_side(int i) {
-    const ContactEdge& contact = problem_.clearance.edges[i];
+    const ContactEdge& contact = discrete_.clearance.edges[i];
     const auto [from, to] = domain_on_the_left(mesh_, contact.edge);
     const Vector way = mesh_.points[to] - mesh_.points[from], d = contact.direction;
     const double length = way.norm(), across = d.dot(Vector(way.y(), -way.x())) / length;
@@ -91,8 +91,8 @@ class Minimization {
     mean /= length * across;
     at_from << 0, d.y(), -d.x(), 0, 0, 0;
     at_to << 0, 0, 0, 0, d.y(), -d.x();
-    const std::string& part = mesh_.boundary[problem_.clearance.rows[contact.rows[0]].part].name;
-    const bool has_direction = !condition_on<Contact>(problem_.problem, part)->direction.isZero(0);
+    const std::string& part = mesh_.boundary[discrete_.clearance.rows[contact.rows[0]].part].name;
+    const bool has_direction = !condition_on<Contact>(discrete_.problem, part)->direction.isZero(0);
     AirySide side{i, from, to, mesh_.edges[contact.edge][0] == from, has_direction, {}};
     side.change << (6 * mean - 4 * at_from - 2 * at_to) / length,
         (-6 * mean + 2 * at_from + 4 * at_to) / length;
@@ -125,8 +125,8 @@ class Minimization {
     const std::vector<int> layers = layers_around(mesh_, points, kAiryLayers);
     std::vector<bool> held(mesh_.points.size(), false);
     for (const BoundaryPart& part : mesh_.boundary) {
-      if (condition_on<Fixed>(problem_.problem, part.name) ||
-          condition_on<Contact>(problem_.problem, part.name))
+      if (condition_on<Fixed>(discrete_.problem, part.name) ||
+          condition_on<Contact>(discrete_.problem, part.name))
         continue;
       for (const int edge : part.edges)
         for (const int point : mesh_.edges[edge]) held[point] = true;
@@ -156,9 +156,9 @@ class Minimization {
   }
 
   /// The change of a triangle's data by (ψ, ∇ψ) at its corners.
-  Eigen::Matrix<double, MacroElement::kData, 9> data_of_airy(int t, const AffineMap& map) const {
+  Eigen::Matrix<double, JohnsonMercier::kData, 9> data_of_airy(int t, const AffineMap& map) const {
     const auto& corners = mesh_.triangles[t];
-    Eigen::Matrix<double, MacroElement::kData, 9> data = decltype(data)::Zero();
+    Eigen::Matrix<double, JohnsonMercier::kData, 9> data = decltype(data)::Zero();
     for (int e = 0; e < 3; ++e) {
       const int from = (e + 1) % 3, to = (e + 2) % 3, side = side_of_edge_[mesh_.triangle_edges[t][e]];
       const Vector way = mesh_.points[corners[to]] - mesh_.points[corners[from]];
@@ -180,19 +180,19 @@ class Minimization {
   }
 
   void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
-    const MacroRule& rule = macro_rule(problem_.spaces(), 6);
-    LawField<2> law(problem_.problem.material);
+    const JohnsonMercierRule& rule = johnson_mercier_rule(discrete_.spaces(), 6);
+    LawField<2> law(discrete_.problem.material);
     std::vector<Eigen::Triplet<double>> entries;
-    for (int t = 0; t < problem_.triangles(); ++t) {
+    for (int t = 0; t < discrete_.triangles(); ++t) {
       const auto& corners = mesh_.triangles[t];
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
       const AffineMap map(mesh_.corners(t));
-      Eigen::Matrix<double, MacroElement::kData, kAiryColumns> data;
-      data << data_of_airy(t, map), macro_data(problem_, tractions, t, map);
+      Eigen::Matrix<double, JohnsonMercier::kData, kAiryColumns> data;
+      data << data_of_airy(t, map), johnson_mercier_data(discrete_, tractions, t, map);
       Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> coefficients(stress.rows(), kAiryColumns);
       coefficients << Eigen::MatrixXd::Zero(stress.rows(), 9), stress.col(t);
-      const std::vector<SymmetricLaw> laws = laws_at(problem_, rule, map, law);
-      const MacroStress<kAiryColumns> sigma(rule, map, data, coefficients, laws);
+      const std::vector<SymmetricLaw> laws = laws_at(discrete_, rule, map, law);
+      const JohnsonMercierStress<kAiryColumns> sigma(rule, map, data, coefficients, laws);
       const auto corrections = correction(rule, map, sigma, laws);
       const auto changes = corrections.leftCols<9>();
       const Eigen::Matrix<double, 9, 9> own = 2 * changes.transpose() * changes;
@@ -217,7 +217,7 @@ class Minimization {
   }
 
   const Vector& direction(const AirySide& side) const {
-    return problem_.clearance.edges[side.number].direction;
+    return discrete_.clearance.edges[side.number].direction;
   }
 
   /// The traction has no tangential part where ∂_n ψ is the same at both ends of a side. Along a direction
@@ -250,7 +250,7 @@ class Minimization {
     return changes;
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Mesh& mesh_;
   ContactPressure& pressure_;
   std::vector<int> side_of_edge_;  ///< of each edge of the mesh, or -1
@@ -262,11 +262,11 @@ class Minimization {
 
 }  // namespace
 
-void minimize_airy(const Discretization& problem, const Eigen::MatrixXd& stress,
+void minimize_airy(const Discretization& discrete, const Eigen::MatrixXd& stress,
                    const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
                    ContactPressure& pressure, Progress& progress) {
   if (pressure.airy_at_points.empty()) return;
-  Minimization(problem, stress, pressure).run(v, clearance, progress);
+  Minimization(discrete, stress, pressure).run(v, clearance, progress);
 }
 
 }  // namespace signorini

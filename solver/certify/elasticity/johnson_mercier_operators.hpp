@@ -4,18 +4,18 @@
 #include <vector>
 
 #include "certify/data/law_pieces.hpp"
-#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/johnson_mercier.hpp"
 #include "certify/local_fields.hpp"
 #include "fem/discretization.hpp"
 
 namespace signorini {
 
 /// Where the integrals over a macro-element are evaluated, with what does not depend on the triangle.
-struct MacroRule {
+struct JohnsonMercierRule {
   /// Without any points.
-  MacroRule() = default;
+  JohnsonMercierRule() = default;
   /// The rule of this degree on each part of the macro-element.
-  MacroRule(const Spaces& spaces, int degree);
+  JohnsonMercierRule(const Spaces& spaces, int degree);
 
   /// Makes it the rule that has on each piece of the triangle in each part of the macro-element what the
   /// piece needs for squares of fields of a degree, with the errors of the pieces.
@@ -24,16 +24,16 @@ struct MacroRule {
   int size() const { return static_cast<int>(places.size()); }
 
   /// The inner nodes of the macro-element: those that are no nodes of P2 on the triangle.
-  static constexpr int kInner = MacroElement::kNodes - 6;
+  static constexpr int kInner = JohnsonMercier::kNodes - 6;
 
   struct Values {
-    Eigen::Matrix<double, 3, MacroElement::kFree> free;  ///< (xx, yy, xy) of the stresses without data
-    Eigen::Matrix<double, 6, 1> basis;                   ///< of P2 on the triangle
+    Eigen::Matrix<double, 3, JohnsonMercier::kFree> free;  ///< (xx, yy, xy) of the stresses without data
+    Eigen::Matrix<double, 6, 1> basis;                     ///< of P2 on the triangle
     Eigen::Matrix<double, 2, 6> gradients;
     LocalVectors stress;  ///< of the row space
   };
 
-  std::vector<MacroElement::Place> places;
+  std::vector<JohnsonMercier::Place> places;
   std::vector<Values> values;
   std::vector<double> errors;  ///< LawPiece::error_of_rule by points; empty if the triangle was not cut
 
@@ -42,7 +42,7 @@ struct MacroRule {
 };
 
 /// The rule of a degree of 6, 10, 18 or 30 for one of the two pairs of spaces, made once.
-const MacroRule& macro_rule(const Spaces& spaces, int degree);
+const JohnsonMercierRule& johnson_mercier_rule(const Spaces& spaces, int degree);
 
 /// (xx, yy, √2 xy) of the symmetric part.
 Eigen::Vector3d mandel(const Tensor<2>& tensor);
@@ -59,19 +59,20 @@ struct SymmetricLaw {
 };
 
 /// The law at every point of the rule, or one for all if the material is constant.
-std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
-                                  LawField<2>& law);
+std::vector<SymmetricLaw> laws_at(const Discretization& discrete, const JohnsonMercierRule& rule,
+                                  const AffineMap& map, LawField<2>& law);
 
 /// The stresses on a macro-element for any number of columns of what describes them: its data and the
 /// coefficients of σ_h.
 template <int Columns>
-struct MacroStress {
+struct JohnsonMercierStress {
   template <int Rows>
   using Block = Eigen::Matrix<double, Rows, Columns>;
 
   /// The law at every point of the rule, or one for all.
-  MacroStress(const MacroRule& rule, const AffineMap& map, const Block<MacroElement::kData>& data,
-              const Block<Eigen::Dynamic>& coefficients, std::span<const SymmetricLaw> laws);
+  JohnsonMercierStress(const JohnsonMercierRule& rule, const AffineMap& map,
+                       const Block<JohnsonMercier::kData>& data, const Block<Eigen::Dynamic>& coefficients,
+                       std::span<const SymmetricLaw> laws);
 
   /// By points, tensors of Mandel: the stress with the data that is nearest to σ_h, and the symmetric part of
   /// σ_h itself.
@@ -84,8 +85,9 @@ constexpr int kAiryColumns = 10;
 
 /// √weight (σ* − the symmetric part of σ_h) in the norm of C, the rows of all points.
 template <int Columns>
-Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule, const AffineMap& map,
-                                                          const MacroStress<Columns>& stress,
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,
+                                                          const AffineMap& map,
+                                                          const JohnsonMercierStress<Columns>& stress,
                                                           std::span<const SymmetricLaw> laws);
 
 /// What the bound integrates over a triangle, for any number of columns of what describes it: the data of the
@@ -94,12 +96,12 @@ Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule,
 /// of one triangle. Rows: of every point, √weight times a tensor such that the square of the norm of a column
 /// is the integral.
 template <int Columns>
-struct MacroValues {
+struct JohnsonMercierOperators {
   template <int Rows>
   using Block = Eigen::Matrix<double, Rows, Columns>;
 
   struct Given {
-    Block<MacroElement::kData> data;
+    Block<JohnsonMercier::kData> data;
     Block<Eigen::Dynamic> stress;
     Block<12> displacement;
     /// Strains (Mandel) at the points that come to those of v_h; none if empty.
@@ -107,8 +109,8 @@ struct MacroValues {
   };
 
   /// The law at every point of the rule, or one for all.
-  MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
-              std::span<const SymmetricLaw> laws);
+  JohnsonMercierOperators(const JohnsonMercierRule& rule, const AffineMap& map, const Given& given,
+                          std::span<const SymmetricLaw> laws);
 
   Block<Eigen::Dynamic> gap;         ///< C σ* − ε(v), in the norm of E
   Block<Eigen::Dynamic> direct_gap;  ///< C sym σ_h − ε(v), in the norm of E
@@ -117,14 +119,14 @@ struct MacroValues {
   Block<Eigen::Dynamic> stress;      ///< σ_h, in the norm of C
   Block<Eigen::Dynamic> strain;      ///< ε(v), in the norm of E
   /// The values of v at the inner nodes beyond those of v_h.
-  Block<2 * MacroRule::kInner> inner;
+  Block<2 * JohnsonMercierRule::kInner> inner;
 };
 
 /// The same for all triangles of one shape and law, as triangular factors: the integrals are ‖gap z‖² with
 /// z = (data, stress, displacement), and so on. Squares of norms keep the digits that a quadratic form of the
 /// small difference of large numbers would lose.
-struct MacroNorms {
-  MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law);
+struct JohnsonMercierNorms {
+  JohnsonMercierNorms(const JohnsonMercierRule& rule, const AffineMap& map, const SymmetricLaw& law);
 
   Eigen::MatrixXd gap, direct_gap, strain;
   Eigen::MatrixXd correction;    ///< of (data, stress)

@@ -1,4 +1,4 @@
-#include "certify/pressure/pressure_chain.hpp"
+#include "certify/pressure/contact_chain.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@ namespace {
 
 class Chains {
  public:
-  Chains(const Discretization& problem, const Eigen::MatrixXd& stress) : problem_(problem) {
+  Chains(const Discretization& discrete, const Eigen::MatrixXd& stress) : discrete_(discrete) {
     int part = -1;
-    for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
+    for (int i = 0; i < static_cast<int>(discrete.clearance.edges.size()); ++i) {
       const auto& [a, b] = points(i);
       const bool follows = part_of(i) == part && (a == all.back().back().end || b == all.back().back().end);
       if (!follows) all.emplace_back();
@@ -22,17 +22,17 @@ class Chains {
     }
   }
 
-  std::vector<Chain> all;
+  std::vector<ContactChain> all;
 
  private:
-  int part_of(int i) const { return problem_.clearance.rows[problem_.clearance.edges[i].rows[0]].part; }
+  int part_of(int i) const { return discrete_.clearance.rows[discrete_.clearance.edges[i].rows[0]].part; }
   const std::array<int, 2>& points(int i) const {
-    return problem_.mesh.edges[problem_.clearance.edges[i].edge];
+    return discrete_.mesh.edges[discrete_.clearance.edges[i].edge];
   }
 
   /// The next edge of the part begins in the point.
   bool goes_on_from(int point, int i) const {
-    if (i + 1 == static_cast<int>(problem_.clearance.edges.size()) || part_of(i + 1) != part_of(i))
+    if (i + 1 == static_cast<int>(discrete_.clearance.edges.size()) || part_of(i + 1) != part_of(i))
       return false;
     return points(i + 1)[0] == point || points(i + 1)[1] == point;
   }
@@ -40,15 +40,15 @@ class Chains {
   /// The forces from the outward fluxes; −σ_n is σ·n for the membrane. A constant pressure acts in equal
   /// parts on both hats.
   Link make_link(int number, bool forward, const Eigen::MatrixXd& stress) const {
-    const ContactEdge& contact = problem_.clearance.edges[number];
+    const ContactEdge& contact = discrete_.clearance.edges[number];
     const auto& [a, b] = points(number);
     Link link{number,       forward ? a : b, forward ? b : a,
-              contact.rows, {0, 0},          problem_.mesh.length(contact.edge)};
-    const int per_edge = problem_.spaces().traces_per_edge(), d = problem_.spaces().components;
-    const int t = problem_.mesh.edge_triangles[contact.edge][0];
-    const int first = problem_.mesh.local_edge(t, contact.edge) * per_edge;
+              contact.rows, {0, 0},          discrete_.mesh.length(contact.edge)};
+    const int per_edge = discrete_.spaces().traces_per_edge(), d = discrete_.spaces().components;
+    const int t = discrete_.mesh.edge_triangles[contact.edge][0];
+    const int first = discrete_.mesh.local_edge(t, contact.edge) * per_edge;
     for (int j = first; j < first + per_edge; j += d)
-      link.forces[problem_.traces.dof(t, j) % per_edge / d] =
+      link.forces[discrete_.traces.dof(t, j) % per_edge / d] =
           d == 1 ? stress(j, t) : -contact.direction.dot(stress.col(t).segment<2>(j));
     if (per_edge == d) link.forces = {link.forces[0] / 2, link.forces[0] / 2};
     if (!forward) {
@@ -58,20 +58,20 @@ class Chains {
     return link;
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
 };
 
 /// The translations along x and y and the rotation about the middle of a chain, in units of its size.
 class ChainMotions {
  public:
-  ChainMotions(const Discretization& problem, const Chain& chain)
-      : problem_(problem), middle_((at(chain.front().begin) + at(chain.back().end)) / 2) {
+  ChainMotions(const Discretization& discrete, const ContactChain& chain)
+      : discrete_(discrete), middle_((at(chain.front().begin) + at(chain.back().end)) / 2) {
     for (const Link& link : chain) size_ += link.length;
   }
 
   /// What each of them is along the direction of contact where the link begins and where it ends.
   std::array<Eigen::Vector3d, 2> along(const Link& link) const {
-    const Vector& d = problem_.clearance.edges[link.number].direction;
+    const Vector& d = discrete_.clearance.edges[link.number].direction;
     std::array<Eigen::Vector3d, 2> motions;
     for (int end = 0; end < 2; ++end) {
       const Vector r = (at(end == 0 ? link.begin : link.end) - middle_) / size_;
@@ -81,7 +81,7 @@ class ChainMotions {
   }
 
   /// The work on them of the forces of a chain: its force and its moment.
-  Eigen::Vector3d work(const Chain& chain) const {
+  Eigen::Vector3d work(const ContactChain& chain) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Link& link : chain) {
       const auto [begin, end] = along(link);
@@ -91,9 +91,9 @@ class ChainMotions {
   }
 
  private:
-  const Point& at(int point) const { return problem_.mesh.points[point]; }
+  const Point& at(int point) const { return discrete_.mesh.points[point]; }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   Point middle_;
   double size_ = 0;
 };
@@ -105,20 +105,20 @@ std::array<double, 2> forces_of(double begin, double end, double length) {
 
 }  // namespace
 
-std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress) {
-  return Chains(problem, stress).all;
+std::vector<ContactChain> contact_chains(const Discretization& discrete, const Eigen::MatrixXd& stress) {
+  return Chains(discrete, stress).all;
 }
 
-double sum_of_forces(const Chain& chain) {
+double sum_of_forces(const ContactChain& chain) {
   double sum = 0;
   for (const Link& link : chain) sum += std::abs(link.forces[0]) + std::abs(link.forces[1]);
   return sum;
 }
 
-AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
-                                 Transition transition, double least_share)
-    : problem_(problem), chain_(std::move(chain)), least_share_(least_share) {
-  if (problem.spaces().order == 1)
+AdmissibleChain::AdmissibleChain(const Discretization& discrete, ContactChain chain,
+                                 const Eigen::VectorXd& clearance, Transition transition, double least_share)
+    : discrete_(discrete), chain_(std::move(chain)), least_share_(least_share) {
+  if (discrete.spaces().order == 1)
     for (std::size_t node = 0; node <= chain_.size(); ++node) move_at_node(node, clearance, transition);
   carry_deficits();
   for (Link& link : chain_) spread(link);
@@ -128,7 +128,7 @@ AdmissibleChain::AdmissibleChain(const Discretization& problem, Chain chain, con
 
 bool AdmissibleChain::is_held(bool at_end) const {
   const int row = at_end ? chain_.back().rows[1] : chain_.front().rows[0];
-  return problem_.clearance.rows[row].unknown < 0;
+  return discrete_.clearance.rows[row].unknown < 0;
 }
 
 /// Across a node, from the edge before it to the edge behind it.
@@ -146,7 +146,7 @@ bool AdmissibleChain::is_open(std::size_t link, const Eigen::VectorXd& clearance
 
 /// Its foundation was drawn near: rounding that pushes there would count with the whole of the true gap.
 bool AdmissibleChain::is_far(const Link& link) const {
-  const auto& rows = problem_.clearance.rows;
+  const auto& rows = discrete_.clearance.rows;
   return rows[link.rows[0]].beyond > 0 && rows[link.rows[1]].beyond > 0;
 }
 
@@ -188,22 +188,22 @@ void AdmissibleChain::carry(std::size_t from, std::size_t to) {
 /// No end is left with less than its least share of the force.
 void AdmissibleChain::spread(Link& link) const {
   const double force = std::max(0., link.force());
-  const double at_begin = problem_.spaces().order == 0
+  const double at_begin = discrete_.spaces().order == 0
                               ? force / 2
                               : std::clamp(link.forces[0], least_share_ * force, (1 - least_share_) * force);
   link.forces = {at_begin, force - at_begin};
 }
 
-bool AdmissibleChain::balance(const Chain& given, double rounding) {
+bool AdmissibleChain::balance(const ContactChain& given, double rounding) {
   if (sum_of_forces(given) <= rounding) {
     for (Link& link : chain_) link.forces = {0, 0};
     return true;
   }
-  const ChainMotions motions(problem_, chain_);
+  const ChainMotions motions(discrete_, chain_);
   // The forces of the pressure times the values at the ends of an edge.
   const auto scaled = [&](const Link& link, double begin, double end) {
     const auto [p, q] = link.pressure();
-    if (problem_.spaces().order == 0) begin = end = (begin + end) / 2;
+    if (discrete_.spaces().order == 0) begin = end = (begin + end) / 2;
     return forces_of(p * begin, q * end, link.length);
   };
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
@@ -225,7 +225,7 @@ bool AdmissibleChain::balance(const Chain& given, double rounding) {
     const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);
     pushes = pushes && (link.force() == 0 || (begin >= 0 && end >= 0));
     link.forces = scaled(link, begin, end);
-    pushes = pushes && (problem_.spaces().order == 0 ||
+    pushes = pushes && (discrete_.spaces().order == 0 ||
                         std::min(link.forces[0], link.forces[1]) >= (1 - 1e-9) * least_share_ * link.force());
   }
   return pushes;

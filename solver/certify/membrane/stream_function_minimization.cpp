@@ -1,11 +1,11 @@
-#include "certify/membrane/least_potential.hpp"
+#include "certify/membrane/stream_function_minimization.hpp"
 
 #include <algorithm>
 #include <iterator>
 
 #include <Eigen/LU>
 
-#include "certify/membrane/potential_nodes.hpp"
+#include "certify/membrane/stream_function_nodes.hpp"
 #include "certify/pressure/admissible_minimum.hpp"
 #include "mesh/parts.hpp"
 
@@ -14,12 +14,12 @@ namespace {
 
 /// ½ Ψ·curvature Ψ + slope·Ψ is ‖curl Ψ − d‖²_C.
 struct SquareOfCurl {
-  SquareOfCurl(const Discretization& problem, const PotentialNodes& nodes, const StressField& d)
+  SquareOfCurl(const Discretization& discrete, const StreamFunctionNodes& nodes, const StressField& d)
       : curvature(nodes.size(), nodes.size()), slope(Eigen::VectorXd::Zero(nodes.size())) {
-    LawField<1> law(problem.problem.material);
+    LawField<1> law(discrete.problem.material);
     std::vector<Eigen::Triplet<double>> entries;
     for (const int t : nodes.triangles()) {
-      const AffineMap map(problem.mesh.corners(t));
+      const AffineMap map(discrete.mesh.corners(t));
       const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
       const std::array<int, 6> own = nodes.on(t);
       Eigen::Matrix<double, 6, 6> square = Eigen::Matrix<double, 6, 6>::Zero();
@@ -50,11 +50,12 @@ struct SquareOfCurl {
 };
 
 /// p* = p_h + ∂_t Ψ at both ends of edge i of the clearance space, with the domain on the left.
-std::array<LinearForm, 2> changes_of(const Discretization& problem, const PotentialNodes& nodes, int i) {
-  const int edge = problem.clearance.edges[i].edge;
-  const auto& [a, b] = problem.mesh.edges[edge];
-  const double sign = domain_on_the_left(problem.mesh, edge)[0] == a ? 1 : -1,
-               scale = sign / problem.mesh.length(edge);
+std::array<LinearForm, 2> changes_of(const Discretization& discrete, const StreamFunctionNodes& nodes,
+                                     int i) {
+  const int edge = discrete.clearance.edges[i].edge;
+  const auto& [a, b] = discrete.mesh.edges[edge];
+  const double sign = domain_on_the_left(discrete.mesh, edge)[0] == a ? 1 : -1,
+               scale = sign / discrete.mesh.length(edge);
   const std::array own{nodes.at_point(a), nodes.at_point(b), nodes.at_middle(edge)};
   constexpr std::array<std::array<double, 3>, 2> slopes{{{-3, -1, 4}, {1, 3, -4}}};
   std::array<LinearForm, 2> changes;
@@ -66,36 +67,39 @@ std::array<LinearForm, 2> changes_of(const Discretization& problem, const Potent
 
 }  // namespace
 
-void minimize_potential(const Discretization& problem, const AdmissibleDisplacement& v,
-                        const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress,
-                        const StressField& d) {
-  if (!d && pressure.potential_at_points.empty()) return;
-  const PotentialNodes nodes = d ? PotentialNodes(problem) : PotentialNodes(problem, pressure);
-  Eigen::VectorXd potential = Eigen::VectorXd::Zero(nodes.size());
-  for (const auto& [point, value] : pressure.potential_at_points)
-    if (nodes.at_point(point) >= 0) potential[nodes.at_point(point)] = value;
-  for (const auto& [edge, value] : pressure.potential_at_middles)
-    if (nodes.at_middle(edge) >= 0) potential[nodes.at_middle(edge)] = value;
+void minimize_stream_function(const Discretization& discrete, const AdmissibleDisplacement& v,
+                              const Eigen::VectorXd& clearance, ContactPressure& pressure, Progress& progress,
+                              const StressField& d) {
+  if (!d && pressure.stream_function_at_points.empty()) return;
+  const StreamFunctionNodes nodes =
+      d ? StreamFunctionNodes(discrete) : StreamFunctionNodes(discrete, pressure);
+  Eigen::VectorXd stream_function = Eigen::VectorXd::Zero(nodes.size());
+  for (const auto& [point, value] : pressure.stream_function_at_points)
+    if (nodes.at_point(point) >= 0) stream_function[nodes.at_point(point)] = value;
+  for (const auto& [edge, value] : pressure.stream_function_at_middles)
+    if (nodes.at_middle(edge) >= 0) stream_function[nodes.at_middle(edge)] = value;
 
   std::vector<MovingPressure> moving;
-  for (int i = 0; i < static_cast<int>(problem.clearance.edges.size()); ++i) {
-    std::array<LinearForm, 2> changes = changes_of(problem, nodes, i);
+  for (int i = 0; i < static_cast<int>(discrete.clearance.edges.size()); ++i) {
+    std::array<LinearForm, 2> changes = changes_of(discrete, nodes, i);
     if (changes[0].empty()) continue;
-    std::ranges::move(moving_pressures(problem, v, clearance, pressure, i, std::move(changes)),
+    std::ranges::move(moving_pressures(discrete, v, clearance, pressure, i, std::move(changes)),
                       std::back_inserter(moving));
   }
-  const SquareOfCurl square(problem, nodes, d);
-  const Eigen::VectorXd change =
-      admissible_minimum(square.curvature, square.slope + square.curvature * potential, moving, {}, progress);
+  const SquareOfCurl square(discrete, nodes, d);
+  const Eigen::VectorXd change = admissible_minimum(
+      square.curvature, square.slope + square.curvature * stream_function, moving, {}, progress);
   move(moving, change, pressure);
-  potential += change;
+  stream_function += change;
 
-  const Mesh& mesh = problem.mesh;
+  const Mesh& mesh = discrete.mesh;
   for (const int t : nodes.triangles())
     for (int k = 0; k < 3; ++k) {
       const int point = mesh.triangles[t][k], edge = mesh.triangle_edges[t][k];
-      if (nodes.at_point(point) >= 0) pressure.potential_at_points[point] = potential[nodes.at_point(point)];
-      if (nodes.at_middle(edge) >= 0) pressure.potential_at_middles[edge] = potential[nodes.at_middle(edge)];
+      if (nodes.at_point(point) >= 0)
+        pressure.stream_function_at_points[point] = stream_function[nodes.at_point(point)];
+      if (nodes.at_middle(edge) >= 0)
+        pressure.stream_function_at_middles[edge] = stream_function[nodes.at_middle(edge)];
     }
 }
 

@@ -1,4 +1,4 @@
-#include "certify/elasticity/macro_values.hpp"
+#include "certify/elasticity/johnson_mercier_operators.hpp"
 
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace signorini {
 namespace {
 
-constexpr int kInner = MacroRule::kInner;
+constexpr int kInner = JohnsonMercierRule::kInner;
 constexpr double kHalf = std::numbers::sqrt2 / 2;  ///< √½
 
 /// Mandel's strain of v = Σ φ_i v_i from the gradients of the φ_i, the components of v in turns.
@@ -49,18 +49,18 @@ Eigen::Matrix3d piola(const AffineMap& map) {
   return transform / map.determinant;
 }
 
-MacroRule::MacroRule(const Spaces& spaces, int degree)
-    : places(MacroElement::places(rule_of_degree(degree))) {
+JohnsonMercierRule::JohnsonMercierRule(const Spaces& spaces, int degree)
+    : places(JohnsonMercier::places(rule_of_degree(degree))) {
   evaluate(spaces);
 }
 
-void MacroRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
-                     double tolerance) {
+void JohnsonMercierRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
+                              double tolerance) {
   places.clear();
   errors.clear();
   for (const LawPiece& piece : pieces) {
     const int degree = piece.degree_of_rule(of_fields, tolerance);
-    const auto own = MacroElement::places(rule_of_degree(degree), piece.place.corners);
+    const auto own = JohnsonMercier::places(rule_of_degree(degree), piece.place.corners);
     places.insert(places.end(), own.begin(), own.end());
     errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
   }
@@ -71,28 +71,30 @@ namespace {
 
 /// Of both pairs of spaces, by their order.
 template <int Degree>
-const MacroRule& macro_rule_of_degree(int order) {
-  static const std::array<MacroRule, 2> rules{MacroRule(spaces_of(Scheme::nonconforming, 2), Degree),
-                                              MacroRule(spaces_of(Scheme::conforming, 2), Degree)};
+const JohnsonMercierRule& johnson_mercier_rule_of_degree(int order) {
+  static const std::array<JohnsonMercierRule, 2> rules{
+      JohnsonMercierRule(spaces_of(Scheme::nonconforming, 2), Degree),
+      JohnsonMercierRule(spaces_of(Scheme::conforming, 2), Degree)};
   return rules[order];
 }
 
 }  // namespace
 
-const MacroRule& macro_rule(const Spaces& spaces, int degree) {
-  if (degree <= 6) return macro_rule_of_degree<6>(spaces.order);
-  if (degree <= 10) return macro_rule_of_degree<10>(spaces.order);
-  return degree <= 18 ? macro_rule_of_degree<18>(spaces.order) : macro_rule_of_degree<30>(spaces.order);
+const JohnsonMercierRule& johnson_mercier_rule(const Spaces& spaces, int degree) {
+  if (degree <= 6) return johnson_mercier_rule_of_degree<6>(spaces.order);
+  if (degree <= 10) return johnson_mercier_rule_of_degree<10>(spaces.order);
+  return degree <= 18 ? johnson_mercier_rule_of_degree<18>(spaces.order)
+                      : johnson_mercier_rule_of_degree<30>(spaces.order);
 }
 
-void MacroRule::evaluate(const Spaces& spaces) {
-  const MacroElement& element = macro_element();
+void JohnsonMercierRule::evaluate(const Spaces& spaces) {
+  const JohnsonMercier& element = johnson_mercier();
   values.resize(places.size());
   for (std::size_t q = 0; q < places.size(); ++q) {
-    const MacroElement::Place& place = places[q];
+    const JohnsonMercier::Place& place = places[q];
     Values& at = values[q];
-    for (int k = 0; k < MacroElement::kFree; ++k)
-      at.free.col(k) = MacroElement::stress(place, element.free.col(k));
+    for (int k = 0; k < JohnsonMercier::kFree; ++k)
+      at.free.col(k) = JohnsonMercier::stress(place, element.free.col(k));
     at.basis = quadratic_basis(place.point);
     at.gradients = quadratic_gradients(place.point);
     at.stress = spaces.row.reference_values(place.point);
@@ -113,34 +115,34 @@ SymmetricLaw::SymmetricLaw(const Eigen::Matrix4d& c) {
   skew_compliance = rotation.dot(c * rotation);
 }
 
-std::vector<SymmetricLaw> laws_at(const Discretization& problem, const MacroRule& rule, const AffineMap& map,
-                                  LawField<2>& law) {
+std::vector<SymmetricLaw> laws_at(const Discretization& discrete, const JohnsonMercierRule& rule,
+                                  const AffineMap& map, LawField<2>& law) {
   std::vector<SymmetricLaw> laws;
-  const std::size_t count = problem.element.has_constant_material() ? 1 : rule.places.size();
+  const std::size_t count = discrete.element.has_constant_material() ? 1 : rule.places.size();
   for (std::size_t q = 0; q < count; ++q) laws.emplace_back(law(map(rule.places[q].point)).compliance);
   return laws;
 }
 
 template <int Columns>
-MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
-                                  const Block<MacroElement::kData>& data,
-                                  const Block<Eigen::Dynamic>& coefficients,
-                                  std::span<const SymmetricLaw> laws)
+JohnsonMercierStress<Columns>::JohnsonMercierStress(const JohnsonMercierRule& rule, const AffineMap& map,
+                                                    const Block<JohnsonMercier::kData>& data,
+                                                    const Block<Eigen::Dynamic>& coefficients,
+                                                    std::span<const SymmetricLaw> laws)
     : admissible(rule.size(), Block<3>::Zero(3, data.cols())),
       discrete(admissible),
       skew(rule.size(), data.cols()) {
   const Eigen::Matrix3d to_triangle = piola(map);
-  const Block<MacroElement::kStresses> with_data = macro_element().from_data * data;
-  constexpr int kFree = MacroElement::kFree;
+  const Block<JohnsonMercier::kStresses> with_data = johnson_mercier().from_data * data;
+  constexpr int kFree = JohnsonMercier::kFree;
   Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
   Block<kFree> free_right = Block<kFree>::Zero(kFree, data.cols());
   for (int q = 0; q < rule.size(); ++q) {
-    const MacroRule::Values& at = rule.values[q];
+    const JohnsonMercierRule::Values& at = rule.values[q];
     const auto of_stress = stresses(map, at.stress);
     discrete[q].noalias() = of_stress.template topRows<3>() * coefficients;
     skew.row(q).noalias() = of_stress.row(3) * coefficients;
     for (Eigen::Index k = 0; k < data.cols(); ++k)
-      admissible[q].col(k).noalias() = to_triangle * MacroElement::stress(rule.places[q], with_data.col(k));
+      admissible[q].col(k).noalias() = to_triangle * JohnsonMercier::stress(rule.places[q], with_data.col(k));
     const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
     const Eigen::Matrix<double, kFree, 3> weighted =
         rule.places[q].weight * own.transpose() * law_at(laws, q).compliance;
@@ -152,8 +154,9 @@ MacroStress<Columns>::MacroStress(const MacroRule& rule, const AffineMap& map,
 }
 
 template <int Columns>
-Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule, const AffineMap& map,
-                                                          const MacroStress<Columns>& stress,
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,
+                                                          const AffineMap& map,
+                                                          const JohnsonMercierStress<Columns>& stress,
                                                           std::span<const SymmetricLaw> laws) {
   Eigen::Matrix<double, Eigen::Dynamic, Columns> rows(3 * rule.size(), stress.skew.cols());
   for (int q = 0; q < rule.size(); ++q)
@@ -164,20 +167,21 @@ Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const MacroRule& rule,
 }
 
 template <int Columns>
-MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, const Given& given,
-                                  std::span<const SymmetricLaw> laws) {
+JohnsonMercierOperators<Columns>::JohnsonMercierOperators(const JohnsonMercierRule& rule,
+                                                          const AffineMap& map, const Given& given,
+                                                          std::span<const SymmetricLaw> laws) {
   const int points = rule.size();
   const Eigen::Index columns = given.data.cols();
   const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
   const auto weight = [&](int q) { return rule.places[q].weight * map.determinant; };
-  const MacroStress<Columns> sigma(rule, map, given.data, given.stress, laws);
+  const JohnsonMercierStress<Columns> sigma(rule, map, given.data, given.stress, laws);
 
   // v is v_h and what brings its strain nearest to C σ*.
   std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));
   Eigen::Matrix<double, 2 * kInner, 2 * kInner> inner_matrix = decltype(inner_matrix)::Zero();
   Block<2 * kInner> inner_right = Block<2 * kInner>::Zero(2 * kInner, columns);
   for (int q = 0; q < points; ++q) {
-    const MacroRule::Values& at = rule.values[q];
+    const JohnsonMercierRule::Values& at = rule.values[q];
     strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
     if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
     const auto own =
@@ -210,19 +214,20 @@ MacroValues<Columns>::MacroValues(const MacroRule& rule, const AffineMap& map, c
   }
 }
 
-template struct MacroStress<kAiryColumns>;
-template Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> correction(const MacroRule&, const AffineMap&,
-                                                                        const MacroStress<kAiryColumns>&,
-                                                                        std::span<const SymmetricLaw>);
-template struct MacroValues<1>;
-template struct MacroValues<Eigen::Dynamic>;
+template struct JohnsonMercierStress<kAiryColumns>;
+template Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> correction(
+    const JohnsonMercierRule&, const AffineMap&, const JohnsonMercierStress<kAiryColumns>&,
+    std::span<const SymmetricLaw>);
+template struct JohnsonMercierOperators<1>;
+template struct JohnsonMercierOperators<Eigen::Dynamic>;
 
-MacroNorms::MacroNorms(const MacroRule& rule, const AffineMap& map, const SymmetricLaw& law) {
-  constexpr int data = MacroElement::kData, displacement = 12;
+JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const AffineMap& map,
+                                         const SymmetricLaw& law) {
+  constexpr int data = JohnsonMercier::kData, displacement = 12;
   const Eigen::Index functions = 2 * rule.values.front().stress.cols();
   const Eigen::MatrixXd unit =
       Eigen::MatrixXd::Identity(data + functions + displacement, data + functions + displacement);
-  const MacroValues<Eigen::Dynamic> values(
+  const JohnsonMercierOperators<Eigen::Dynamic> values(
       rule, map,
       {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>(), {}},
       std::span(&law, 1));

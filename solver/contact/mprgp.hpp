@@ -18,8 +18,7 @@ namespace signorini {
 /// they are met; and where the body is nearly incompressible, S λ − c has lost digits of the pressures that
 /// the stress has. So `body` is asked then, its answer put in the place of both, and the iteration goes on
 /// until the residuals are met by that. It is asked last for the clearance of a result that converged.
-ContactResult accelerated_uzawa(const ContactComplement& contact, const AcceleratedUzawa& settings,
-                                Progress& progress, const StateOfBody& body,
-                                const Eigen::VectorXd& start = {});
+ContactResult mprgp(const ContactComplement& contact, const Mprgp& settings, Progress& progress,
+                    const StateOfBody& body, const Eigen::VectorXd& start = {});
 
 }  // namespace signorini

@@ -1,4 +1,4 @@
-#include "certify/displacement/potential.hpp"
+#include "certify/displacement/recovered_displacement.hpp"
 
 #include "certify/local_fields.hpp"
 
@@ -6,18 +6,18 @@ namespace signorini {
 namespace {
 
 template <int D>
-class Potential {
+class RecoveredDisplacement {
  public:
-  Potential(const Discretization& problem, const Solution& solution)
-      : problem_(problem),
+  RecoveredDisplacement(const Discretization& discrete, const Solution& solution)
+      : discrete_(discrete),
         solution_(solution),
-        stress_(problem.spaces(), triangle_points()),
-        law_(problem.problem.material),
+        stress_(discrete.spaces(), triangle_points()),
+        law_(discrete.problem.material),
         weights_(corner_weights()) {}
 
   /// Column z: the value at corner z.
   Eigen::Matrix<double, D, 3> at_corners(int t) {
-    const auto corners = problem_.mesh.corners(t);
+    const auto corners = discrete_.mesh.corners(t);
     const Eigen::Matrix<double, 2 * D, 3> slope = gradient_at_corners(t, AffineMap(corners));
     Eigen::Matrix<double, D, 3> rise,
         bend;  // along edge e from corner e + 1 to e + 2: of u, and of its slope
@@ -54,7 +54,7 @@ class Potential {
     }
     if constexpr (D == 2)
       for (int z = 0; z < 3; ++z) {
-        const double rotation = solution_.rotation[problem_.mesh.triangles[t][z]];
+        const double rotation = solution_.rotation[discrete_.mesh.triangles[t][z]];
         gradient(1, z) += rotation;
         gradient(2, z) -= rotation;
       }
@@ -68,7 +68,7 @@ class Potential {
     return mean * D / u.size();
   }
 
-  const Discretization& problem_;
+  const Discretization& discrete_;
   const Solution& solution_;
   StressValues<D> stress_;
   LawField<D> law_;
@@ -79,16 +79,16 @@ class Potential {
 /// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the
 /// more.
 template <int D>
-Eigen::MatrixXd average(const Discretization& problem, const Solution& solution) {
-  Potential<D> potential(problem, solution);
-  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(D, problem.mesh.points.size());
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(problem.mesh.points.size());
-  for (int t = 0; t < problem.triangles(); ++t) {
-    const Eigen::Matrix<double, D, 3> corners = potential.at_corners(t);
+Eigen::MatrixXd average(const Discretization& discrete, const Solution& solution) {
+  RecoveredDisplacement<D> recovered(discrete, solution);
+  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(D, discrete.mesh.points.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(discrete.mesh.points.size());
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    const Eigen::Matrix<double, D, 3> corners = recovered.at_corners(t);
     for (int z = 0; z < 3; ++z) {
-      const int point = problem.mesh.triangles[t][z];
-      values.col(point) += potential.stiffness() * corners.col(z);
-      weights[point] += potential.stiffness();
+      const int point = discrete.mesh.triangles[t][z];
+      values.col(point) += recovered.stiffness() * corners.col(z);
+      weights[point] += recovered.stiffness();
     }
   }
   // Points without a triangle have nothing to average.
@@ -99,8 +99,8 @@ Eigen::MatrixXd average(const Discretization& problem, const Solution& solution)
 
 }  // namespace
 
-Eigen::MatrixXd displacement_at_corners(const Discretization& problem, const Solution& solution) {
-  return problem.spaces().components == 1 ? average<1>(problem, solution) : average<2>(problem, solution);
+Eigen::MatrixXd displacement_at_corners(const Discretization& discrete, const Solution& solution) {
+  return discrete.spaces().components == 1 ? average<1>(discrete, solution) : average<2>(discrete, solution);
 }
 
 }  // namespace signorini

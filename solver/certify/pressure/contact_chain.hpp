@@ -24,13 +24,13 @@ struct Link {
 };
 
 /// Consecutive contact edges of one part.
-using Chain = std::vector<Link>;
+using ContactChain = std::vector<Link>;
 
 /// All chains, with the forces of −σ_hn.
-std::vector<Chain> pressure_chains(const Discretization& problem, const Eigen::MatrixXd& stress);
+std::vector<ContactChain> contact_chains(const Discretization& discrete, const Eigen::MatrixXd& stress);
 
 /// Of their sizes: what a force of the chain is small beside.
-double sum_of_forces(const Chain& chain);
+double sum_of_forces(const ContactChain& chain);
 
 /// A chain whose pressure is made admissible: forces are moved from edge to edge and from end to end, none
 /// further than it must.
@@ -43,15 +43,15 @@ class AdmissibleChain {
   /// What each end of an edge must have of its force: for a linear pressure ≥ 0, and for one that is steep.
   static constexpr double kLinear = 1. / 3, kSteep = 1. / 20;
 
-  AdmissibleChain(const Discretization& problem, Chain chain, const Eigen::VectorXd& clearance,
+  AdmissibleChain(const Discretization& discrete, ContactChain chain, const Eigen::VectorXd& clearance,
                   Transition transition, double least_share);
 
-  const Chain& links() const { return chain_; }
+  const ContactChain& links() const { return chain_; }
 
   /// Of an elastic body: multiplies the pressure by 1 + r·d, where d is the direction of contact and r a
   /// rigid motion, such that force and moment are those of the given chain again. Returns false if the
   /// pressure would turn negative.
-  bool balance(const Chain& given, double rounding);
+  bool balance(const ContactChain& given, double rounding);
 
   /// Neither end of the chain lies on Γ_D.
   bool has_free_ends() const { return !is_held(false) && !is_held(true); }
@@ -71,8 +71,8 @@ class AdmissibleChain {
   bool is_open(std::size_t link, const Eigen::VectorXd& clearance) const;
   bool is_far(const Link& link) const;
 
-  const Discretization& problem_;
-  Chain chain_;
+  const Discretization& discrete_;
+  ContactChain chain_;
   double least_share_;
   double force_of_support_ = 0;
 };

@@ -1,4 +1,4 @@
-#include "certify/elasticity/macro_element.hpp"
+#include "certify/elasticity/johnson_mercier.hpp"
 
 #include <cmath>
 
@@ -20,8 +20,8 @@ Point corner(int i) {
 const Point kCentroid(1. / 3, 1. / 3);
 
 /// The affine map of a part: from its corners, those of the edge first and then the centroid.
-struct MacroPart {
-  explicit MacroPart(int k) : origin(corner(k + 1)) {
+struct JohnsonMercierPart {
+  explicit JohnsonMercierPart(int k) : origin(corner(k + 1)) {
     jacobian << corner(k + 2) - origin, kCentroid - origin;
   }
 
@@ -57,9 +57,9 @@ Eigen::Matrix<double, 2, 3> barycentric_gradients() {
   return (Eigen::Matrix<double, 2, 3>() << -1, 1, 0, -1, 0, 1).finished();
 }
 
-Eigen::Matrix<double, 3, MacroElement::kBubbles> bubbles(const Point& x) {
+Eigen::Matrix<double, 3, JohnsonMercier::kBubbles> bubbles(const Point& x) {
   const Eigen::Vector3d lambda = barycentric(x);
-  Eigen::Matrix<double, 3, MacroElement::kBubbles> values;
+  Eigen::Matrix<double, 3, JohnsonMercier::kBubbles> values;
   for (int e = 0; e < 3; ++e) {
     const int i = (e + 1) % 3, j = (e + 2) % 3;
     const Vector t = corner(j) - corner(i);
@@ -70,10 +70,10 @@ Eigen::Matrix<double, 3, MacroElement::kBubbles> bubbles(const Point& x) {
   return values;
 }
 
-Eigen::Matrix<double, 2, MacroElement::kBubbles> divergences_of_bubbles(const Point& x) {
+Eigen::Matrix<double, 2, JohnsonMercier::kBubbles> divergences_of_bubbles(const Point& x) {
   const Eigen::Vector3d lambda = barycentric(x);
   const Eigen::Matrix<double, 2, 3> slopes = barycentric_gradients();
-  Eigen::Matrix<double, 2, MacroElement::kBubbles> values;
+  Eigen::Matrix<double, 2, JohnsonMercier::kBubbles> values;
   for (int e = 0; e < 3; ++e) {
     const int i = (e + 1) % 3, j = (e + 2) % 3;
     const Vector t = corner(j) - corner(i);
@@ -86,10 +86,10 @@ Eigen::Matrix<double, 2, MacroElement::kBubbles> divergences_of_bubbles(const Po
 }
 
 /// Rows of conditions on the coefficients and the data that they must meet.
-struct MacroConditions {
+struct JohnsonMercierConditions {
   static constexpr int kRows = 18 + 18 + 36;
-  DynamicMatrix of_stress = DynamicMatrix::Zero(kRows, MacroElement::kStresses);
-  DynamicMatrix of_data = DynamicMatrix::Zero(kRows, MacroElement::kData);
+  DynamicMatrix of_stress = DynamicMatrix::Zero(kRows, JohnsonMercier::kStresses);
+  DynamicMatrix of_data = DynamicMatrix::Zero(kRows, JohnsonMercier::kData);
   int rows = 0;
 
   /// Adds τ N at node i of a part to two rows.
@@ -100,7 +100,7 @@ struct MacroConditions {
   }
 };
 
-void add_outer_tractions(MacroConditions& all) {
+void add_outer_tractions(JohnsonMercierConditions& all) {
   for (int k = 0; k < 3; ++k) {
     const Vector n = scaled_normal(corner(k + 1), corner(k + 2));
     const std::array<int, 3> nodes{0, 1, 5};
@@ -111,7 +111,7 @@ void add_outer_tractions(MacroConditions& all) {
   }
 }
 
-void add_inner_continuity(MacroConditions& all) {
+void add_inner_continuity(JohnsonMercierConditions& all) {
   for (int v = 0; v < 3; ++v) {
     const Vector n = scaled_normal(corner(v), kCentroid);
     // Corner v begins the edge of one part and ends that of another.
@@ -124,9 +124,9 @@ void add_inner_continuity(MacroConditions& all) {
   }
 }
 
-void add_divergence(MacroConditions& all) {
+void add_divergence(JohnsonMercierConditions& all) {
   for (int k = 0; k < 3; ++k) {
-    const MacroPart part(k);
+    const JohnsonMercierPart part(k);
     const DynamicMatrix to_reference = part.jacobian.inverse().transpose();
     for (int i = 0; i < 6; ++i, all.rows += 2) {
       const Point x = part(own_node(i));
@@ -135,32 +135,32 @@ void add_divergence(MacroConditions& all) {
         const Vector g = gradients.col(j);
         all.of_stress.block<2, 3>(all.rows, 18 * k + 3 * j) << g.x(), 0, g.y(), 0, g.y(), g.x();
       }
-      all.of_stress.block<2, MacroElement::kBubbles>(all.rows, MacroElement::kPieces) =
+      all.of_stress.block<2, JohnsonMercier::kBubbles>(all.rows, JohnsonMercier::kPieces) =
           divergences_of_bubbles(x);
       const Eigen::Matrix<double, 6, 1> shares = quadratic_basis(x);
       for (int j = 0; j < 6; ++j)
-        all.of_data.block<2, 2>(all.rows, MacroElement::kTractions + 2 * j) =
+        all.of_data.block<2, 2>(all.rows, JohnsonMercier::kTractions + 2 * j) =
             shares[j] * Eigen::Matrix2d::Identity();
     }
   }
 }
 
-MacroElement make() {
-  MacroConditions all;
+JohnsonMercier make() {
+  JohnsonMercierConditions all;
   add_outer_tractions(all);
   add_inner_continuity(all);
   add_divergence(all);
   Eigen::JacobiSVD<DynamicMatrix> svd(all.of_stress, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(1e-10);
-  MacroElement element;
+  JohnsonMercier element;
   element.from_data = svd.solve(all.of_data);
-  element.free = svd.matrixV().rightCols<MacroElement::kFree>();
+  element.free = svd.matrixV().rightCols<JohnsonMercier::kFree>();
   return element;
 }
 
 }  // namespace
 
-Point MacroElement::node(int number) {
+Point JohnsonMercier::node(int number) {
   if (number < 3) return corner(number);
   if (number < 6) return (corner(number - 2) + corner(number - 1)) / 2;
   if (number == 6) return kCentroid;
@@ -170,15 +170,15 @@ Point MacroElement::node(int number) {
 namespace {
 
 /// At a point in the reference coordinates of part k.
-MacroElement::Place place_in(int k, const Point& own, double weight) {
-  const MacroPart part(k);
-  MacroElement::Place place{part(own),
-                            weight,
-                            k,
-                            quadratic_basis(own),
-                            bubbles(part(own)),
-                            Eigen::Matrix<double, 2, MacroElement::kNodes>::Zero(),
-                            Eigen::Matrix<double, MacroElement::kNodes, 1>::Zero()};
+JohnsonMercier::Place place_in(int k, const Point& own, double weight) {
+  const JohnsonMercierPart part(k);
+  JohnsonMercier::Place place{part(own),
+                              weight,
+                              k,
+                              quadratic_basis(own),
+                              bubbles(part(own)),
+                              Eigen::Matrix<double, 2, JohnsonMercier::kNodes>::Zero(),
+                              Eigen::Matrix<double, JohnsonMercier::kNodes, 1>::Zero()};
   const Eigen::Matrix<double, 2, 6> gradients =
       part.jacobian.inverse().transpose() * quadratic_gradients(own);
   const std::array<int, 6> nodes = nodes_of(k);
@@ -191,18 +191,18 @@ MacroElement::Place place_in(int k, const Point& own, double weight) {
 
 }  // namespace
 
-std::vector<MacroElement::Place> MacroElement::places(const std::vector<WeightedPoint>& rule) {
+std::vector<JohnsonMercier::Place> JohnsonMercier::places(const std::vector<WeightedPoint>& rule) {
   std::vector<Place> all;
   for (int k = 0; k < 3; ++k)
     for (const auto& [point, weight] : rule) all.push_back(place_in(k, point, weight / 3));
   return all;
 }
 
-std::vector<MacroElement::Place> MacroElement::places(const std::vector<WeightedPoint>& rule,
-                                                      const std::array<Point, 3>& triangle) {
+std::vector<JohnsonMercier::Place> JohnsonMercier::places(const std::vector<WeightedPoint>& rule,
+                                                          const std::array<Point, 3>& triangle) {
   std::vector<Place> all;
   for (int k = 0; k < 3; ++k) {
-    const MacroPart part(k);
+    const JohnsonMercierPart part(k);
     const Eigen::Matrix2d into = part.jacobian.inverse();
     std::vector<Point> inside;
     for (const Point& x : triangle) inside.push_back(into * (x - part.origin));
@@ -218,8 +218,8 @@ std::vector<MacroElement::Place> MacroElement::places(const std::vector<Weighted
   return all;
 }
 
-const MacroElement& macro_element() {
-  static const MacroElement element = make();
+const JohnsonMercier& johnson_mercier() {
+  static const JohnsonMercier element = make();
   return element;
 }
 
