@@ -48,8 +48,8 @@ LoadsBroughtBack add_patches(const Discretization& discrete, const Solution& sol
       const LawOnMesh laws(discrete.problem.material, *pairs.patch().mesh, tolerance, within);
       if (!pairs.are_admissible() || !laws.unmet().empty()) continue;
       const LoadsBroughtBack own =
-          bring_back(pairs.problem(), laws, pairs.first().pressure, parents, discrete.triangles());
-      totals.add<1>(pairs.problem(), laws, pairs.first(), MembraneSums(pairs), parents, within,
+          bring_back(pairs.discretization(), laws, pairs.first().pressure, parents, discrete.triangles());
+      totals.add<1>(pairs.discretization(), laws, pairs.first(), MembraneSums(pairs), parents, within,
                     &pairs.second());
       for (const int t : parents) owners[t] = -1;
       back.square += own.square;

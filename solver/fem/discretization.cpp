@@ -6,7 +6,7 @@
 namespace signorini {
 
 Discretization::Discretization(const Problem& posed, const Mesh& given, Progress* progress)
-    : discrete(posed),
+    : problem(posed),
       mesh(given),
       element(posed),
       body(posed, mesh, progress),
@@ -20,7 +20,7 @@ Discretization::Discretization(const Problem& posed, const Mesh& given, Progress
 }
 
 void Discretization::draw_near(double reach) {
-  clearance = make_clearance_space(discrete, mesh, reach);
+  clearance = make_clearance_space(problem, mesh, reach);
   traces.meet(clearance);
 }
 

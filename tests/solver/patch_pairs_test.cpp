@@ -62,7 +62,7 @@ class OnPatch {
     return (1 - s) * pair.pressure.at_ends[i][0] + s * pair.pressure.at_ends[i][1];
   }
   double room(const AdmissiblePair& pair, int i, double s) const {
-    return pair.v.room(pairs_.problem().clearance.edges[i], s);
+    return pair.v.room(pairs_.discretization().clearance.edges[i], s);
   }
   double w(int i, double s) const { return room(pairs_.second(), i, s) - room(pairs_.first(), i, s); }
   double pi(int i, double s) const {
@@ -111,7 +111,7 @@ double integrate_over(const PatchPairs& pairs, const Function& f) {
 template <typename Function>
 double integrate_over_contact(const PatchPairs& pairs, const Function& f) {
   const Mesh& mesh = *pairs.patch().mesh;
-  const std::vector<ContactEdge>& edges = pairs.problem().clearance.edges;
+  const std::vector<ContactEdge>& edges = pairs.discretization().clearance.edges;
   double sum = 0;
   for (int i = 0; i < static_cast<int>(edges.size()); ++i) {
     const auto& [first, second] = mesh.edges[edges[i].edge];
@@ -157,7 +157,7 @@ TEST_P(PatchPairsOfTheEdge, KnowTheErrorAgainstTheirDifference) {
       return (2 * exact - on.sigma(t, x) - on.slope(t, x)).dot(on.slope_of_w(t, x) + on.tau(t, x));
     });
     const double unknown = 2 * integrate_over_contact(*pairs, [&](int i, double s) {
-                             const auto& [a, b] = mesh.edges[pairs->problem().clearance.edges[i].edge];
+                             const auto& [a, b] = mesh.edges[pairs->discretization().clearance.edges[i].edge];
                              const double x = (1 - s) * mesh.points[a].x() + s * mesh.points[b].x();
                              const double pressure = x < 0 ? 1.5 * std::sqrt(-x) : 0,
                                           room = x > 0 ? std::pow(x, 1.5) : 0;
@@ -179,7 +179,7 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
                                          std::get<Rectangle>(problem.domain), divisions, Pattern::right)));
     for (const auto& pairs : pairs_of(whole)) {
       Totals totals(whole.discretization().triangles());
-      totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
+      totals.add<1>(pairs->discretization(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
                     pairs->first(), MembraneSums(*pairs), pairs->patch().parents, whole.progress(),
                     &pairs->second());
       const Sums sums = sums_of(*pairs);
@@ -196,7 +196,7 @@ TEST(Totals, AddUpWhatTheBoundIsMadeOf) {
 
 TEST_P(PatchPairsOfTheEdge, AreAdmissible) {
   for (const auto& pairs : all_) {
-    const std::vector<ContactEdge>& edges = pairs->problem().clearance.edges;
+    const std::vector<ContactEdge>& edges = pairs->discretization().clearance.edges;
     for (const AdmissiblePair* pair : {&pairs->first(), &pairs->second()})
       for (int i = 0; i < static_cast<int>(edges.size()); ++i)
         for (const double s : {0., 0.1, 0.3, 0.5, 0.8, 1.}) {
@@ -257,7 +257,7 @@ TEST(PatchPairs, OfARandomProblemFitTheirSurroundingsAndTheError) {
   expect_to_fit(whole, all);
   for (const auto& pairs : all) {
     Totals totals(whole.discretization().triangles());
-    totals.add<1>(pairs->problem(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
+    totals.add<1>(pairs->discretization(), {problem.material, *pairs->patch().mesh, 1e-8, whole.progress()},
                   pairs->first(), MembraneSums(*pairs), pairs->patch().parents, whole.progress(),
                   &pairs->second());
     const TriangleSums& sums = totals.all;

@@ -54,7 +54,7 @@ MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd
     : discrete_(discrete), stress_(stress), pair_(pair), balance_(discrete) {}
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
-    : MembraneSums(pairs.problem(), pairs.stress(), pairs.first()) {
+    : MembraneSums(pairs.discretization(), pairs.stress(), pairs.first()) {
   second_ = &pairs.second();
   change_ = &pairs.change();
 }

@@ -13,7 +13,7 @@ class LocalContact {
  public:
   LocalContact(const Discretization& whole, const Patch& patch, const Condition& on_cut, Progress& progress);
 
-  const Discretization& discrete() const { return discretization_; }
+  const Discretization& discretization() const { return discretization_; }
   /// Only stress and displacement.
   const Solution& solution() const { return solution_; }
   const Eigen::VectorXd& coupling() const { return coupling_; }

@@ -84,14 +84,14 @@ PatchPairs::PatchPairs(const Discretization& whole, const Eigen::MatrixXd& stres
 
 bool PatchPairs::are_admissible() const {
   return loaded_.is_balanced() && first_.v.unmet().empty() && first_.pressure.lacks.empty() &&
-         problem().body.unmet().empty() && problem().traction.unmet().empty();
+         discretization().body.unmet().empty() && discretization().traction.unmet().empty();
 }
 
 AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
-  AdmissiblePair pair{{held_.problem(), held_.solution(), held_.coupling(), progress},
-                      {loaded_.problem(), loaded_.solution().stress, loaded_.clearance()}};
-  pair.v.relax(work_of_loads(held_.problem()), kStepsFromAverage, progress);
-  minimize_stream_function(loaded_.problem(), pair.v, loaded_.clearance(), pair.pressure, progress);
+  AdmissiblePair pair{{held_.discretization(), held_.solution(), held_.coupling(), progress},
+                      {loaded_.discretization(), loaded_.solution().stress, loaded_.clearance()}};
+  pair.v.relax(work_of_loads(held_.discretization()), kStepsFromAverage, progress);
+  minimize_stream_function(loaded_.discretization(), pair.v, loaded_.clearance(), pair.pressure, progress);
   return pair;
 }
 
@@ -99,8 +99,8 @@ AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
 AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
   constexpr int steps = 40;
   const Mesh& mesh = *patch_.mesh;
-  const StressValues<1> stress_at(problem().spaces(), triangle_points());
-  LawField<1> law(problem().problem.material);
+  const StressValues<1> stress_at(discretization().spaces(), triangle_points());
+  LawField<1> law(discretization().problem.material);
   const auto stress_of = [&](const AdmissibleDisplacement& v, int t) {
     const AffineMap map(mesh.corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
@@ -128,11 +128,11 @@ AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
   };
   AdmissiblePair pair = first_;
   const Eigen::VectorXd work =
-      work_of_stress(problem(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
+      work_of_stress(discretization(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
   pair.v.relax(work, steps, progress);
   // σ*₂ = σ* − δ + E ε(v − v₂) would be exact.
   minimize_stream_function(
-      loaded_.problem(), first_.v, loaded_.clearance(), pair.pressure, progress,
+      loaded_.discretization(), first_.v, loaded_.clearance(), pair.pressure, progress,
       [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - stress_of(pair.v, t) - change(t); });
   return pair;
 }

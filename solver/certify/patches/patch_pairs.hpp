@@ -25,7 +25,7 @@ class PatchPairs {
 
   const Patch& patch() const { return patch_; }
   /// With v given on the cut.
-  const Discretization& discrete() const { return held_.problem(); }
+  const Discretization& discretization() const { return held_.discretization(); }
   const AdmissiblePair& first() const { return first_; }
   const AdmissiblePair& second() const { return second_; }
   /// A column of coefficients a triangle of the patch: of σ_h, and of σ* − σ_h without the stream function.
