@@ -82,7 +82,8 @@ void add_daemon_flags(CLI::App& app, DaemonConfig& daemon) {
   add_flag(app, "--data-dir", daemon.data_dir, "Directory where solves are kept; :memory: keeps nothing")
       ->check(
           CLI::Validator([](const std::string& value) { return value.empty() ? "is empty" : ""; }, "DIR"));
-  add_flag(app, "--queue-limit", daemon.queue_limit, "Solves that may wait; more are refused with 503")
+  add_flag(app, "--queue-limit", daemon.queue_limit,
+           "Requests that may wait, a batch being one; more are refused with 503")
       ->check(CLI::Range(1, 100000));
   take_bytes(add_flag(app, "--keep-bytes", daemon.keep_bytes,
                       "Disk or memory for ended solves; the oldest are dropped"),

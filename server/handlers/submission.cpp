@@ -28,28 +28,22 @@ HttpError key_reused(const std::string& key, const KeyReused& reused) {
                ". Take a new key for a new problem."}};
 }
 
-/// The limit of the queue that was met, and its flag.
-std::string in_words(const QueueFull& full) {
-  return "which is " +
-         std::string(full.share ? "the limit of this name (--token-file)" : "the limit (--queue-limit)");
-}
-
-/// Fewer wait than the limit, but not few enough for so many more.
-HttpError no_places(const QueueFull& full, std::size_t jobs, const std::string& name) {
+HttpError no_place(const QueueFull& full, std::size_t jobs, const std::string& name) {
   const std::string limit = std::to_string(full.limit);
-  const std::string whose = full.share ? " of `" + name + "`" : "";
+  if (!full.share)
+    return unavailable("queue-full", "The queue is full",
+                       limit + " requests are waiting, which is the limit (--queue-limit).", "5");
+  const std::string of_name = " solves of `" + name + "`", reason = "the limit of this name (--token-file).";
   if (jobs > full.limit)
     return {413,
             {"batch-too-long", "The batch is too long",
-             "It has " + std::to_string(jobs) + " problems; " + limit + " solves" + whose + " may wait, " +
-                 in_words(full) + ". Split the batch."}};
-  const std::string detail =
-      jobs == 1 ? limit + " solves" + whose + " are waiting, " + in_words(full) + "."
-                : "The " + std::to_string(jobs) + " problems of the batch and the solves" + whose +
-                      " that are waiting are more than " + limit + ", " + in_words(full) + ".";
-  if (full.share)
-    return {429, {"share-used-up", "The share of the queue is used up", detail}, {{"Retry-After", "5"}}};
-  return unavailable("queue-full", "The queue is full", detail, "5");
+             "It has " + std::to_string(jobs) + " problems; " + limit + of_name + " may wait, which is " +
+                 reason + " Split the batch."}};
+  const std::string detail = jobs == 1
+                                 ? limit + of_name + " are waiting, which is " + reason
+                                 : "The " + std::to_string(jobs) + " problems of the batch and the" +
+                                       of_name + " that are waiting are more than " + limit + ", " + reason;
+  return {429, {"share-used-up", "The share of the queue is used up", detail}, {{"Retry-After", "5"}}};
 }
 
 /// What `queue` returns, its complaints as replies. Others work while the disk does.
@@ -60,7 +54,7 @@ auto queued(const Request& request, const std::optional<std::string>& key, std::
     const ThreadPool::Waiting rest;
     return queue();
   } catch (const QueueFull& full) {
-    throw no_places(full, jobs, request.identity.name);
+    throw no_place(full, jobs, request.identity.name);
   } catch (const MemoryFull& full) {
     throw unavailable("memory-full", "The memory is spoken for", full.what(), "10");
   } catch (const Stopping&) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ranges>
+#include <unordered_set>
 
 #include <spdlog/spdlog.h>
 
@@ -45,9 +46,9 @@ Batch MemoryStore::add(NewBatch batch) {
   return batch.batch;
 }
 
-/// Throws QueueFull if not so many jobs more may wait.
+/// Throws QueueFull if no request more may wait, or not so many jobs of the owner.
 void MemoryStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) const {
-  if (queue_.size() + jobs > limits_.queue) throw QueueFull(limits_.queue);
+  if (requests_in_queue() >= limits_.queue) throw QueueFull(limits_.queue);
   if (share.queue && queued(owner) + jobs > *share.queue) throw QueueFull(*share.queue, true);
 }
 
@@ -92,6 +93,19 @@ std::optional<Batch> MemoryStore::batch_with_key(const Key& key, const std::stri
   if (entry == batches_.end()) throw KeyReused(found->second);
   if (entry->second.digest != digest) throw KeyReused(found->second, true);
   return entry->second.batch;
+}
+
+std::size_t MemoryStore::requests_in_queue() const {
+  std::size_t alone = 0;
+  std::unordered_set<std::string_view> batches;
+  for (const std::string& id : queue_) {
+    const std::string& batch = entries_.at(id).job.batch;
+    if (batch.empty())
+      ++alone;
+    else
+      batches.insert(batch);
+  }
+  return alone + batches.size();
 }
 
 std::size_t MemoryStore::queued(const std::string& owner) const {

@@ -68,6 +68,7 @@ class MemoryStore : public JobStore {
   std::optional<Batch> batch_with_key(const Key& key, const std::string& digest) const;
   void require_places(std::size_t jobs, const std::string& owner, const Share& share) const;
   void enqueue(NewJob job);
+  std::size_t requests_in_queue() const;
   std::size_t queued(const std::string& owner) const;
   Entry* running(const Claim& claim);
   void end(Entry& entry, const Ending& ending, Removed& removed);

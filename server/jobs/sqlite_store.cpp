@@ -240,10 +240,17 @@ Batch SqliteStore::add(NewBatch batch) {
   });
 }
 
-/// Within a step: throws QueueFull if not so many jobs more may wait.
+/// Within a step: throws QueueFull if no request more may wait, or not so many jobs of the owner.
 void SqliteStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) {
-  if (queued("", owner) + jobs > limits_.queue) throw QueueFull(limits_.queue);
-  if (share.queue && queued(" AND owner = ?", owner) + jobs > *share.queue)
+  const auto count = [](SQLite::Statement row) {
+    row.executeStep();
+    return static_cast<std::size_t>(row.getColumn(0).getInt64());
+  };
+  const char* const requests =
+      "SELECT count(DISTINCT iif(batch = '', id, batch)) FROM jobs WHERE status = 'queued'";
+  if (count(prepared(writer_, requests)) >= limits_.queue) throw QueueFull(limits_.queue);
+  const char* const of_owner = "SELECT count(*) FROM jobs WHERE status = 'queued' AND owner = ?";
+  if (share.queue && count(prepared(writer_, of_owner, owner)) + jobs > *share.queue)
     throw QueueFull(*share.queue, true);
 }
 
@@ -258,14 +265,6 @@ void SqliteStore::insert(const NewJob& job, const std::string& packed_problem) {
   prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed_problem}).exec();
   if (job.key)
     prepared(writer_, "INSERT INTO idempotency_keys VALUES (?, ?, ?)", job.owner, *job.key, job.id).exec();
-}
-
-/// Jobs that wait, under a further condition on their rows, of which the owner is the value.
-std::size_t SqliteStore::queued(const std::string& condition, const std::string& owner) {
-  const std::string sql = "SELECT count(*) FROM jobs WHERE status = 'queued'" + condition;
-  auto row = condition.empty() ? prepared(writer_, sql) : prepared(writer_, sql, owner);
-  row.executeStep();
-  return static_cast<std::size_t>(row.getColumn(0).getInt64());
 }
 
 std::optional<std::string> SqliteStore::earlier(const std::string& owner, const std::string& key,

@@ -70,7 +70,6 @@ class SqliteStore : public JobStore {
                                       const std::string& key, const std::string& digest) const;
   void require_places(std::size_t jobs, const std::string& owner, const Share& share);
   void insert(const NewJob& job, const std::string& packed_problem);
-  std::size_t queued(const std::string& condition, const std::string& owner);
   bool end(const std::string& id, const std::string& condition, const Ending& ending,
            const std::string& findings);
   void drop_beyond_limits();

@@ -14,7 +14,7 @@
 
 namespace signorini::server {
 
-/// As many jobs wait as may wait.
+/// As many requests wait as may wait, a batch being one, or as many jobs of one owner.
 class QueueFull : public std::runtime_error {
  public:
   explicit QueueFull(std::size_t queue_limit, bool only_share = false)
@@ -50,7 +50,7 @@ class CannotOpenStore : public std::runtime_error {
 };
 
 struct StoreLimits {
-  std::size_t queue = 64;       ///< jobs that may wait
+  std::size_t queue = 64;       ///< requests that may wait, a batch being one
   std::size_t keep_bytes = 0;   ///< for what has ended; the job that ended last is kept however large it is
   std::chrono::seconds keep{};  ///< how long what has ended is kept
 };

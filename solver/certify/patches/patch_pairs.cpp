@@ -127,8 +127,8 @@ AdmissiblePair PatchPairs::second_pair(Progress& progress) const {
     return stress;
   };
   AdmissiblePair pair = first_;
-  const Eigen::VectorXd work =
-      work_of_stress(discretization(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
+  const Eigen::VectorXd work = work_of_stress(
+      discretization(), [&](int t) -> StressAtPoints { return stress_of(first_.v, t) - delta(t); });
   pair.v.relax(work, steps, progress);
   // σ*₂ = σ* − δ + E ε(v − v₂) would be exact.
   minimize_stream_function(
