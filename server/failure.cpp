@@ -4,8 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "api/cbor_document.hpp"
-#include "api/json_document.hpp"
+#include "api/document/cbor_document.hpp"
+#include "api/document/json_document.hpp"
 #include "server/jobs/store.hpp"
 #include "solve.hpp"
 

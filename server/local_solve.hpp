@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "api/piece_writer.hpp"
+#include "api/document/piece_writer.hpp"
 #include "server/jobs/run.hpp"
 #include "server/series.hpp"
 

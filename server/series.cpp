@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "api/vtu.hpp"
+#include "api/result/vtu.hpp"
 #include "server/local_solve.hpp"
 #include "solve.hpp"
 

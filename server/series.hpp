@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "api/problem_json.hpp"
-#include "api/pvd.hpp"
+#include "api/problem/problem_json.hpp"
+#include "api/result/pvd.hpp"
 #include "progress/observer.hpp"
 #include "result/solution.hpp"
 

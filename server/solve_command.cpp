@@ -1,10 +1,10 @@
 #include "server/solve_command.hpp"
 
-#include "api/csv.hpp"
 #include "api/picture/picture.hpp"
-#include "api/result_document.hpp"
-#include "api/result_table.hpp"
-#include "api/vtu.hpp"
+#include "api/result/csv.hpp"
+#include "api/result/result_document.hpp"
+#include "api/result/result_table.hpp"
+#include "api/result/vtu.hpp"
 #include "server/local_solve.hpp"
 #include "server/terminal.hpp"
 

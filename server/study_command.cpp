@@ -1,8 +1,8 @@
 #include "server/study_command.hpp"
 
-#include "api/csv.hpp"
-#include "api/result_document.hpp"
-#include "api/study_table.hpp"
+#include "api/result/csv.hpp"
+#include "api/result/result_document.hpp"
+#include "api/result/study_table.hpp"
 #include "server/local_solve.hpp"
 
 namespace signorini::server {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/piece_writer.hpp"
+#include "api/document/piece_writer.hpp"
 #include "result/solution.hpp"
 
 namespace signorini::api {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "api/piece_writer.hpp"
+#include "api/document/piece_writer.hpp"
 #include "result/solution.hpp"
 
 namespace signorini::api {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "api/piece_writer.hpp"
+#include "api/document/piece_writer.hpp"
 #include "problem/field.hpp"
 
 namespace signorini::api {

@@ -7,7 +7,7 @@
 
 #include "api/examples.hpp"
 #include "api/picture/picture.hpp"
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "solve.hpp"
 
 namespace signorini {

@@ -4,7 +4,7 @@
 
 #include <openssl/sha.h>
 
-#include "api/batch_json.hpp"
+#include "api/problem/batch_json.hpp"
 #include "server/handlers/intake.hpp"
 #include "server/handlers/submission.hpp"
 #include "server/http/error.hpp"

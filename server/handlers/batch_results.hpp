@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "api/result_document.hpp"
+#include "api/result/result_document.hpp"
 #include "server/handlers/service.hpp"
 #include "server/http/response.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/document_writer.hpp"
+#include "api/document/document_writer.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
 

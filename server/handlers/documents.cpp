@@ -1,6 +1,6 @@
 #include "server/handlers/documents.hpp"
 
-#include "api/result_members.hpp"
+#include "api/result/result_members.hpp"
 #include "server/http/query.hpp"
 
 namespace signorini::server {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "api/document_writer.hpp"
+#include "api/document/document_writer.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/store.hpp"
 

@@ -1,8 +1,8 @@
 #include "server/handlers/downloads.hpp"
 
-#include "api/csv.hpp"
 #include "api/picture/picture.hpp"
-#include "api/vtu.hpp"
+#include "api/result/csv.hpp"
+#include "api/result/vtu.hpp"
 #include "server/handlers/find_job.hpp"
 #include "server/http/query.hpp"
 

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "api/result_members.hpp"
+#include "api/result/result_members.hpp"
 #include "server/handlers/documents.hpp"
 #include "server/handlers/find_job.hpp"
 #include "server/http/error.hpp"

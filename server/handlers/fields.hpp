@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/result_document.hpp"
+#include "api/result/result_document.hpp"
 #include "server/http/request.hpp"
 
 namespace signorini::server {

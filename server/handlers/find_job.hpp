@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "api/result_document.hpp"
+#include "api/result/result_document.hpp"
 #include "server/handlers/service.hpp"
 #include "server/http/error.hpp"
 #include "server/http/request.hpp"

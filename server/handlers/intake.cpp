@@ -6,7 +6,7 @@
 
 #include <malloc.h>
 
-#include "api/cbor_document.hpp"
+#include "api/document/cbor_document.hpp"
 #include "server/http/content.hpp"
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"

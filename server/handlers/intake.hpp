@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "server/handlers/service.hpp"
 #include "server/http/error.hpp"
 #include "server/http/request.hpp"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "api/limits.hpp"
-#include "api/problem_members.hpp"
+#include "api/problem/problem_members.hpp"
 #include "server/handlers/dismiss.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/documents.hpp"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/examples.hpp"
-#include "api/result_document.hpp"
+#include "api/result/result_document.hpp"
 #include "server/gallery/example_pictures.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/downloads.hpp"

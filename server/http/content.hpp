@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/gzip.hpp"
+#include "api/document/gzip.hpp"
 #include "server/http/response.hpp"
 
 namespace signorini::server {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "contact/operator.hpp"
 #include "server/jobs/job.hpp"
 #include "server/jobs/live_solve.hpp"

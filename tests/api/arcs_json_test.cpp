@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 #include "mesh/domain_mesh.hpp"
 

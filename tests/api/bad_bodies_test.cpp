@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "api/json_document.hpp"
-#include "api/problem_json.hpp"
+#include "api/document/json_document.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 
 namespace signorini::api::bad_bodies_test {

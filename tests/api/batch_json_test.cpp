@@ -1,12 +1,12 @@
-#include "api/batch_json.hpp"
+#include "api/problem/batch_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/json_document.hpp"
-#include "api/json_slices.hpp"
-#include "api/problem_json.hpp"
+#include "api/document/json_document.hpp"
+#include "api/document/json_slices.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 
 namespace signorini::api::batch_json_test {

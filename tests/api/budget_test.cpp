@@ -11,8 +11,8 @@
 #include "../problems/json_problems.hpp"
 #include "../problems/sanitized.hpp"
 #include "../problems/seconds_at_work.hpp"
-#include "api/json_document.hpp"
-#include "api/problem_json.hpp"
+#include "api/document/json_document.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 #include "solve.hpp"
 

@@ -1,11 +1,11 @@
-#include "api/cbor_document.hpp"
+#include "api/document/cbor_document.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "api/document/json_document.hpp"
 #include "api/examples.hpp"
-#include "api/json_document.hpp"
 #include "written_by.hpp"
 
 namespace signorini::api::cbor_document_test {

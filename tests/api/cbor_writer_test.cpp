@@ -1,4 +1,4 @@
-#include "api/cbor_writer.hpp"
+#include "api/document/cbor_writer.hpp"
 
 #include <cmath>
 #include <limits>

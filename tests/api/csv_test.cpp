@@ -1,4 +1,4 @@
-#include "api/csv.hpp"
+#include "api/result/csv.hpp"
 
 #include <cmath>
 #include <stdexcept>

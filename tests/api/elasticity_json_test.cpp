@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::elasticity_json_test {

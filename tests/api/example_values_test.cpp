@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "api/examples.hpp"
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::example_values_test {

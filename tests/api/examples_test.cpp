@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 
 namespace signorini::api::examples_test {
 namespace {

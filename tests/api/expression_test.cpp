@@ -1,4 +1,4 @@
-#include "api/expression.hpp"
+#include "api/problem/expression.hpp"
 
 #include <cmath>
 #include <numbers>

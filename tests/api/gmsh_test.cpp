@@ -1,5 +1,5 @@
 // Files of Gmsh: both versions give the same mesh; what is no such file is refused with the line.
-#include "api/gmsh.hpp"
+#include "api/problem/gmsh.hpp"
 
 #include <gtest/gtest.h>
 

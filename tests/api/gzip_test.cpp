@@ -1,4 +1,4 @@
-#include "api/gzip.hpp"
+#include "api/document/gzip.hpp"
 
 #include <random>
 

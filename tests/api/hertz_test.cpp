@@ -7,7 +7,7 @@
 
 #include "../problems/sanitized.hpp"
 #include "api/examples.hpp"
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "solve.hpp"
 
 namespace signorini::api::hertz_test {

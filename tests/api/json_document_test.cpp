@@ -1,4 +1,4 @@
-#include "api/json_document.hpp"
+#include "api/document/json_document.hpp"
 
 #include <limits>
 

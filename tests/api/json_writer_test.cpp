@@ -1,4 +1,4 @@
-#include "api/json_writer.hpp"
+#include "api/document/json_writer.hpp"
 
 #include <bit>
 #include <cmath>

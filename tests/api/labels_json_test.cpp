@@ -1,12 +1,12 @@
 // Titles and tags.
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/problem_members.hpp"
+#include "api/problem/problem_members.hpp"
 #include "faults_of.hpp"
 
 namespace signorini::api::labels_json_test {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../problems/json_problems.hpp"
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 #include "solve.hpp"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 
 namespace signorini::api::operator_key_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "api/result_document.hpp"
+#include "api/result/result_document.hpp"
 
 #include <cmath>
 
@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "api/document/json_writer.hpp"
 #include "api/examples.hpp"
-#include "api/json_writer.hpp"
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 #include "written_by.hpp"
 

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/csv.hpp"
-#include "api/problem_json.hpp"
-#include "api/result_document.hpp"
-#include "api/study_table.hpp"
+#include "api/problem/problem_json.hpp"
+#include "api/result/csv.hpp"
+#include "api/result/result_document.hpp"
+#include "api/result/study_table.hpp"
 #include "faults_of.hpp"
 #include "written_by.hpp"
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "api/problem_json.hpp"
-#include "api/result_document.hpp"
+#include "api/problem/problem_json.hpp"
+#include "api/result/result_document.hpp"
 #include "faults_of.hpp"
 #include "solve.hpp"
 #include "written_by.hpp"

@@ -1,4 +1,4 @@
-#include "api/vtu.hpp"
+#include "api/result/vtu.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -184,7 +184,7 @@ TEST(WriteVtu, LaysTheArraysSideBySide) {
   }
 }
 
-/// What a reader of the offsets like meshio's needs: see order_of_data in api/vtu.cpp.
+/// What a reader of the offsets like meshio's needs: see order_of_data in api/result/vtu.cpp.
 TEST(WriteVtu, DescribesTheArraysFromTheLastToTheFirst) {
   const std::string head = read_vtu(file_of(two_triangles(2, Scheme::conforming))).head;
   std::vector<std::uint64_t> offsets;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "api/document_writer.hpp"
+#include "api/document/document_writer.hpp"
 
 namespace signorini::api {
 

@@ -5,8 +5,8 @@
 
 #include <benchmark/benchmark.h>
 
-#include "api/gzip.hpp"
-#include "api/result_document.hpp"
+#include "api/document/gzip.hpp"
+#include "api/result/result_document.hpp"
 
 namespace signorini::api {
 namespace {

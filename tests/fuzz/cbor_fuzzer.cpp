@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "api/cbor_document.hpp"
+#include "api/document/cbor_document.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include "api/expression.hpp"
+#include "api/problem/expression.hpp"
 
 /// Whatever text stands for an expression, it is refused with a fault, or it can be evaluated, if only to a
 /// value that is refused.

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "api/gmsh.hpp"
+#include "api/problem/gmsh.hpp"
 #include "problem/field.hpp"
 
 /// Whatever text stands for a mesh of Gmsh, it is refused with a fault, or its triangles and lines have

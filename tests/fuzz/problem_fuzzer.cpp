@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "api/json_document.hpp"
-#include "api/problem_json.hpp"
+#include "api/document/json_document.hpp"
+#include "api/problem/problem_json.hpp"
 
 /// Whatever bytes a client sends, the parser of problems takes them or refuses them with a fault.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

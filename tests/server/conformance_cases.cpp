@@ -1,6 +1,6 @@
 #include "conformance_cases.hpp"
 
-#include "api/gzip.hpp"
+#include "api/document/gzip.hpp"
 
 namespace signorini::server {
 namespace {

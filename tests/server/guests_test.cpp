@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-#include "api/gzip.hpp"
+#include "api/document/gzip.hpp"
 #include "child_process.hpp"
 #include "long_tests.hpp"
 #include "process_figures.hpp"

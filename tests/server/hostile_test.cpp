@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "../problems/json_problems.hpp"
-#include "api/gzip.hpp"
+#include "api/document/gzip.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
 #include "long_tests.hpp"

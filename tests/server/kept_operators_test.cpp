@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "api/problem_json.hpp"
+#include "api/problem/problem_json.hpp"
 #include "server/jobs/run.hpp"
 
 namespace signorini::server::kept_operators_test {

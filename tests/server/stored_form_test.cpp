@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "../problems/sanitized.hpp"
-#include "api/csv.hpp"
 #include "api/examples.hpp"
-#include "api/result_document.hpp"
-#include "api/vtu.hpp"
+#include "api/result/csv.hpp"
+#include "api/result/result_document.hpp"
+#include "api/result/vtu.hpp"
 #include "progress/memory_meter.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/run.hpp"

@@ -1,0 +1,130 @@
+#include <algorithm>
+
+#include "api/document/json_pointer.hpp"
+#include "api/limits.hpp"
+#include "api/problem/problem_members.hpp"
+
+namespace signorini::api {
+namespace {
+
+using nlohmann::json;
+
+std::vector<Scheme> read_schemes(const Value& value) {
+  std::vector<Scheme> schemes;
+  value.for_each("an array of schemes: " + list_of(only_names(scheme_names)), [&](const Value& entry) {
+    const auto scheme = entry.one_of(scheme_names);
+    if (!scheme) return;
+    if (std::ranges::find(schemes, *scheme) != schemes.end()) entry.fault("is there twice");
+    schemes.push_back(*scheme);
+  });
+  if (value.json().is_array() && value.json().empty()) value.fault("must have at least one scheme");
+  return schemes;
+}
+
+std::vector<Field> read_stress(const Value& value, Model model) {
+  const bool membrane = model == Model::membrane;
+  const auto entries = membrane ? value.elements(2, "an array of two numbers or expressions, [qx, qy]")
+                                : value.elements(3, "an array of three numbers or expressions, [xx, yy, xy]");
+  std::vector<Field> stress;
+  if (entries)
+    for (const Value& entry : *entries)
+      stress.push_back(read_field(entry, Variables::interior).value_or(Field()));
+  return stress;
+}
+
+Exact read_exact(const Value& value, Model model) {
+  Exact exact;
+  const auto object = value.object();
+  if (!object) return exact;
+  object->allow({"displacement", "stress", "energy"}, "an exact solution");
+  if (const auto displacement = object->find("displacement"))
+    exact.displacement = read_vector_field(*displacement, model, Variables::interior);
+  if (const auto stress = object->find("stress")) exact.stress = read_stress(*stress, model);
+  if (const auto energy = object->find("energy")) exact.energy = energy->number();
+  return exact;
+}
+
+/// The document's mesh, to which a study gives another fineness.
+json base_mesh(const Object& document) {
+  const auto mesh = document.find("mesh");
+  return mesh ? mesh->json() : json::object();
+}
+
+/// How a member of the study that lists meshes gives an entry to the mesh.
+using SetFineness = void (*)(json& mesh, const json& entry);
+
+const Names<SetFineness> finenesses{
+    {"divisions",
+     [](json& mesh, const json& entry) {
+       mesh.erase("size");
+       mesh["divisions"] = entry.is_number() ? json{entry, entry} : entry;
+     }},
+    {"sizes",
+     [](json& mesh, const json& entry) {
+       mesh.erase("divisions");
+       mesh["size"] = entry;
+     }},
+    {"refine", [](json& mesh, const json& entry) { mesh["refine"] = entry; }}};
+
+/// The mesh without what is wrong with it: all of that is the entry's fault, for the document's own mesh is
+/// sound.
+StudyMesh read_entry(const Value& entry, json mesh, SetFineness set_fineness, const Problem& problem) {
+  mesh.erase("adaptive");
+  set_fineness(mesh, entry.json());
+  Faults faults;
+  StudyMesh read{entry.pointer(), read_mesh(Value(mesh, "", faults), problem.domain)};
+  try {
+    faults.throw_if_any();
+  } catch (const InvalidProblem& invalid) {
+    entry.fault(invalid.faults().front().detail);
+  }
+  return read;
+}
+
+StudyMesh read_adaptive(const Value& value, json mesh, const Value& study, const Problem& problem) {
+  mesh["adaptive"] = value.json();
+  return {value.pointer(), read_mesh(Value(mesh, study.pointer(), value.faults()), problem.domain)};
+}
+
+std::vector<StudyMesh> read_meshes(const Value& value, const Object& study, const Object& document,
+                                   const Problem& problem) {
+  const json mesh = base_mesh(document);
+  if (const auto adaptive = study.find("adaptive")) return {read_adaptive(*adaptive, mesh, value, problem)};
+  std::vector<StudyMesh> meshes;
+  for (const auto& [name, set_fineness] : finenesses)
+    if (const auto member = study.find(name)) {
+      const std::vector<Value> entries = member->list("an array of meshes", limits::study_meshes);
+      if (member->json().is_array() && member->json().empty()) member->fault("must have at least one entry");
+      for (const Value& entry : entries) meshes.push_back(read_entry(entry, mesh, set_fineness, problem));
+    }
+  return meshes;
+}
+
+/// Whether there is exactly one member that says what the meshes are.
+bool has_meshes(const Value& value, const Object& study) {
+  std::vector<std::string_view> names = only_names(finenesses);
+  names.push_back("adaptive");
+  const auto given = std::ranges::count_if(names, [&](auto name) { return study.find(name).has_value(); });
+  if (given != 1) value.fault("must have exactly one of " + list_of(names) + ": the meshes to solve on");
+  return given == 1;
+}
+
+}  // namespace
+
+Study read_study(const Value& value, const Object& document, const Problem& problem) {
+  Study study;
+  const bool sound_before = !value.faults().has_any_at("");
+  const auto object = value.object();
+  if (!object) return study;
+  object->allow({"schemes", "divisions", "sizes", "refine", "adaptive", "exact"}, "a study");
+  const auto schemes = object->find("schemes");
+  study.schemes = schemes ? read_schemes(*schemes) : std::vector{problem.scheme};
+  const Model model = components(problem.material) == 1 ? Model::membrane : Model::elasticity;
+  if (const auto exact = object->find("exact")) study.exact = read_exact(*exact, model);
+  // What is wrong with the document's mesh would be wrong with every mesh again.
+  if (has_meshes(value, *object) && sound_before)
+    study.meshes = read_meshes(value, *object, document, problem);
+  return study;
+}
+
+}  // namespace signorini::api

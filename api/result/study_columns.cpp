@@ -1,0 +1,137 @@
+#include "api/result/study_columns.hpp"
+
+#include "api/names.hpp"
+
+namespace signorini::api {
+namespace {
+
+/// The quotient, if there are both and it is a number.
+std::optional<double> quotient(const std::optional<ErrorBound>& bound, const std::optional<double>& error) {
+  if (!bound || !error || !(*error > 0)) return std::nullopt;
+  return bound->value / *error;
+}
+
+std::optional<double> bound_of(const StudyRow& row) {
+  return row.error_bound ? std::optional(row.error_bound->value) : std::nullopt;
+}
+
+/// What the row has if it was solved: `value(row)` as a cell.
+using CellOfRow = std::function<Cell(const StudyRow&)>;
+
+CellOfRow of_bound(double ErrorBound::Parts::*part) {
+  return
+      [part](const StudyRow& row) { return row.error_bound ? Cell(row.error_bound->parts.*part) : Cell(); };
+}
+
+const Names<CellOfRow>& columns_of_sizes() {
+  static const Names<CellOfRow> columns{
+      {"level", [](const StudyRow& row) { return row.level > 0 ? Cell(std::int64_t{row.level}) : Cell(); }},
+      {"size", [](const StudyRow& row) { return Cell(row.size); }},
+      {"triangles", [](const StudyRow& row) { return Cell(row.triangles); }},
+      {"unknowns", [](const StudyRow& row) {
+         const Unknowns& n = row.unknowns;
+         return Cell(n.stress + n.displacement + n.contact + n.rotation);
+       }}};
+  return columns;
+}
+
+const Names<CellOfRow>& columns_of_bound() {
+  static const Names<CellOfRow> columns{
+      {"relative",
+       [](const StudyRow& row) { return row.error_bound ? Cell(row.error_bound->relative) : Cell(); }},
+      {"guaranteed",
+       [](const StudyRow& row) { return row.error_bound ? Cell(row.error_bound->guaranteed) : Cell(); }},
+      {"constitutive", of_bound(&ErrorBound::Parts::constitutive)},
+      {"contact", of_bound(&ErrorBound::Parts::contact)},
+      {"oscillation", of_bound(&ErrorBound::Parts::oscillation)},
+      {"equilibration", of_bound(&ErrorBound::Parts::equilibration)},
+      {"asymmetry", of_bound(&ErrorBound::Parts::asymmetry)},
+      {"effectivity",
+       [](const StudyRow& row) { return cell_of(quotient(row.error_bound, row.errors.total)); }},
+      {"stress_effectivity",
+       [](const StudyRow& row) { return cell_of(quotient(row.error_bound, row.errors.energy_norm)); }},
+      {"energy", [](const StudyRow& row) { return Cell(row.energy); }}};
+  return columns;
+}
+
+const Names<CellOfRow>& columns_of_cost() {
+  static const Names<CellOfRow> columns{
+      {"iterations", [](const StudyRow& row) { return Cell(std::int64_t{row.iterations}); }},
+      {"seconds", [](const StudyRow& row) { return Cell(row.seconds); }}};
+  return columns;
+}
+
+/// Gathers columns, and leaves out those in which nothing stands.
+class Columns {
+ public:
+  explicit Columns(const std::vector<StudyRow>& rows) : rows_(rows) {}
+
+  void add(std::string name, std::function<Cell(std::size_t row)> cell) {
+    for (std::size_t row = 0; row < rows_.size(); ++row)
+      if (cell(row) != Cell()) {
+        all_.push_back({std::move(name), std::move(cell)});
+        return;
+      }
+  }
+
+  /// Columns that a row without a solution has nothing in.
+  void add(const Names<CellOfRow>& columns) {
+    for (const auto& [name, of_row] : columns)
+      add(std::string(name), [&rows = rows_, of_row = of_row](std::size_t row) {
+        return rows[row].error.empty() ? of_row(rows[row]) : Cell();
+      });
+  }
+
+  std::vector<StudyColumn> take() { return std::move(all_); }
+
+ private:
+  const std::vector<StudyRow>& rows_;
+  std::vector<StudyColumn> all_;
+};
+
+}  // namespace
+
+Cell cell_of(const std::optional<double>& number) {
+  return number ? Cell(*number) : Cell();
+}
+
+const std::vector<NamedQuantity>& falling_quantities() {
+  static const std::vector<NamedQuantity> quantities{
+      {"bound", bound_of},
+      {"displacement_error", [](const StudyRow& row) { return row.errors.displacement; }},
+      {"stress_error", [](const StudyRow& row) { return row.errors.stress; }},
+      {"energy_norm_error", [](const StudyRow& row) { return row.errors.energy_norm; }},
+      {"energy_error", [](const StudyRow& row) { return row.errors.energy; }},
+      {"total_error", [](const StudyRow& row) { return row.errors.total; }}};
+  return quantities;
+}
+
+std::vector<Scheme> schemes_of(const std::vector<StudyRow>& rows) {
+  std::vector<Scheme> schemes;
+  for (const StudyRow& row : rows)
+    if (schemes.empty() || schemes.back() != row.scheme) schemes.push_back(row.scheme);
+  return schemes;
+}
+
+std::vector<StudyColumn> study_columns(const std::vector<StudyRow>& rows) {
+  Columns columns(rows);
+  columns.add("scheme", [&rows](std::size_t row) {
+    return Cell(std::string(name_in(scheme_names, rows[row].scheme)));
+  });
+  columns.add(columns_of_sizes());
+  for (const auto& [name, value] : falling_quantities()) {
+    columns.add(name, [&rows, &value = value](std::size_t row) {
+      return rows[row].error.empty() ? cell_of(value(rows[row])) : Cell();
+    });
+    columns.add(name + "_rate", [&rows, &value = value](std::size_t row) {
+      return cell_of(observed_rate(rows, row, value));
+    });
+  }
+  columns.add(columns_of_bound());
+  columns.add(columns_of_cost());
+  columns.add("error",
+              [&rows](std::size_t row) { return rows[row].error.empty() ? Cell() : Cell(rows[row].error); });
+  return columns.take();
+}
+
+}  // namespace signorini::api
