@@ -247,7 +247,8 @@ class Conversation(unittest.TestCase):
         self.assertEqual(self.call("GET", path, 200)["counts"]["succeeded"], 2)
         self.assertEqual(len(self.call("GET", "/v1/solves?tag=of%20a%20batch", 200)["solves"]), 2)
         self.call("POST", "/v1/batches", 422, json.dumps({"problems": [*problems, {}]}))
-        self.call("POST", "/v1/batches", 413, json.dumps({"problems": [problems[0]] * 65}))
+        too_large = {**problems[0], "mesh": {"divisions": [3100, 3100]}, "scheme": "conforming"}
+        self.call("POST", "/v1/batches", 413, json.dumps({"problems": [too_large]}))
         self.call("POST", "/v1/batches", 400, "[")
         self.call("DELETE", path, 200)
         self.call("GET", path, 404)
