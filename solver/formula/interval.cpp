@@ -139,6 +139,7 @@ Interval angle(const Interval& y, const Interval& x) {
 }
 
 Interval power(const Interval& a, double exponent) {
+  if (exponent == 0) return 1;  // also of 0, where Boost's has no value
   const bool is_whole = exponent == std::floor(exponent) && std::abs(exponent) <= 1000;
   if (is_whole && exponent >= 0) return boost::numeric::pow(a, static_cast<int>(exponent));
   if (is_whole) return inverse(boost::numeric::pow(a, static_cast<int>(-exponent)));

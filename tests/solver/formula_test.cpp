@@ -157,6 +157,20 @@ TEST(Formula, OfAHighPowerIsSmallBesideItsZero) {
   }
 }
 
+/// Also in the single point where it vanishes: 0^0 = 1.
+TEST(Formula, OfAWholePowerHasAllDerivativesAtItsZero) {
+  for (const int exponent : {0, 1, 2, 3, 12}) {
+    const Formula formula = parse_formula("sin(x)^" + std::to_string(exponent), false);
+    Enclosure<Series> at_zero{Series::line(9, 0, 1), Series(9, 0), Series(9, 0), Series(9, 0)};
+    const Series series = formula.evaluate(at_zero);
+    for (int k = 0; k <= std::min(exponent, 9); ++k) {
+      EXPECT_NEAR(series[k].lower(), k == exponent, 1e-15) << exponent;
+      EXPECT_NEAR(series[k].upper(), k == exponent, 1e-15) << exponent;
+    }
+    for (int k = 0; k <= 9; ++k) EXPECT_TRUE(is_known(series[k])) << exponent;
+  }
+}
+
 /// Against the same number, written without cancellation.
 TEST(Formula, KnowsWhatRoundingTakesFromItsValues) {
   const std::pair<const char*, const char*> pairs[] = {{"(1-cos(1e-8*x))*2e16", "x^2"},
