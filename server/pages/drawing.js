@@ -77,10 +77,18 @@ function program(gl, fragment) {
 
 const mostSmoothed = 100000; // triangles whose edges are smoothed: software draws four samples a pixel
 
+/// The numbers of some corners.
+function picked(numbers, size, corners) {
+  const own = new Float32Array(size * corners.length);
+  corners.forEach((corner, i) => { for (let c = 0; c < size; ++c) own[size * i + c] = numbers[size * corner + c]; });
+  return own;
+}
+
 export class Drawing {
-  /// Throws if the browser has no WebGL2. `onRestored` is called when a lost context is back, and all is to be set again.
-  constructor(canvas, triangles, onRestored) {
-    this.canvas = canvas;
+  /// `coarse`: what is drawn of it in motion (coarse.js), null if that is all. Throws if the browser has no WebGL2.
+  /// `onRestored` is called when a lost context is back, and all is to be set again.
+  constructor(canvas, triangles, coarse, onRestored) {
+    Object.assign(this, { canvas, coarse });
     this.gl = canvas.getContext("webgl2", { antialias: triangles <= mostSmoothed, alpha: true, premultipliedAlpha: true });
     if (!this.gl) throw new Error("This browser has no WebGL2.");
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
@@ -92,35 +100,35 @@ export class Drawing {
     const { gl } = this;
     this.shown = program(gl, coloured);
     this.numbers = program(gl, numbered);
-    this.buffers = [2, 2, 1].map((size, location) => {
-      const buffer = gl.createBuffer();
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.enableVertexAttribArray(location);
-      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
-      return buffer;
-    });
+    [this.whole, this.rough] = [null, this.coarse].map((coarse, i) => (i && !coarse ? null : { array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()), coarse }));
     this.texture = gl.createTexture();
     this.target = null;
     gl.enable(gl.DEPTH_TEST);
   }
 
-  fill(location, numbers, size) {
+  /// So many numbers a corner; `of`: "own" or "at", by which corner of the whole those of the coarse one go.
+  fill(location, numbers, size, of) {
     const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[location]);
-    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
-    gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
+    for (const { array, buffers, coarse } of [this.whole, this.rough].filter(Boolean)) {
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[location]);
+      gl.bufferData(gl.ARRAY_BUFFER, coarse ? picked(numbers, size, coarse[of]) : numbers, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
+    }
   }
 
   /// Two coordinates a corner; one number a corner by which it is lifted, or two by which it is shifted.
   setShape(places, shifts) {
-    this.count = places.length / 2;
+    this.whole.count = places.length / 2;
+    if (this.rough) this.rough.count = this.coarse.own.length;
     this.surface = shifts.length < places.length;
-    this.fill(0, places, 2);
-    this.fill(1, shifts, this.surface ? 1 : 2);
+    this.fill(0, places, 2, "at");
+    this.fill(1, shifts, this.surface ? 1 : 2, "at");
   }
 
   setValues(values) {
-    this.fill(2, values, 1);
+    this.fill(2, values, 1, "own");
   }
 
   /// 256 colours of four bytes.
@@ -132,7 +140,7 @@ export class Drawing {
       gl.texParameteri(gl.TEXTURE_2D, gl[`TEXTURE_${name}`], gl[value]);
   }
 
-  run({ made, ...at }, view, width, height) {
+  run({ made, ...at }, { array, count }, view, width, height) {
     const { gl } = this;
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
@@ -146,13 +154,16 @@ export class Drawing {
     if (at.even) gl.uniform1i(at.even, view.even);
     if (at.mesh) gl.uniform1i(at.mesh, view.mesh);
     if (at.lit) gl.uniform1i(at.lit, view.lit);
-    gl.drawArrays(gl.TRIANGLES, 0, this.count);
+    gl.bindVertexArray(array);
+    gl.drawArrays(gl.TRIANGLES, 0, count);
   }
 
-  draw(view) {
-    const { gl, canvas } = this;
+  /// With so many pixels. `moving`: soon another one follows, so that of a large mesh a rough one does.
+  draw(view, moving, width, height) {
+    const { gl, canvas } = this, rough = moving ? this.rough : null, pixels = [width, height].map((each) => Math.ceil(rough ? each / 2 : each));
+    if (canvas.width !== pixels[0] || canvas.height !== pixels[1]) [canvas.width, canvas.height] = pixels;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this.run(this.shown, view, canvas.width, canvas.height);
+    this.run(this.shown, rough || this.whole, rough ? { ...view, mesh: false } : view, ...pixels);
     this.numbered = false;
   }
 
@@ -162,7 +173,7 @@ export class Drawing {
     if (x < 0 || y < 0 || x >= width || y >= height) return -1;
     if (!this.target || this.target.width !== width || this.target.height !== height) this.makeTarget(width, height);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.target.framebuffer);
-    if (!this.numbered) this.run(this.numbers, view, width, height);
+    if (!this.numbered) this.run(this.numbers, this.whole, view, width, height);
     this.numbered = true;
     const bytes = new Uint8Array(4);
     gl.readPixels(Math.floor(x), height - 1 - Math.floor(y), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, bytes);

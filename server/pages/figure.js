@@ -1,5 +1,6 @@
 // The picture of one result: its triangles by WebGL, over them the boundary, nodes and crosses, beside it the scale.
 
+import { coarse } from "/pages/coarse.js";
 import { colour, scaleOf } from "/pages/colours.js";
 import { Drawing } from "/pages/drawing.js";
 import { aria, element, short } from "/pages/element.js";
@@ -7,6 +8,8 @@ import { extent, fieldsOf, isBody, valueAt } from "/pages/fields.js";
 import { nodesOf } from "/pages/nodes.js";
 import { Projection } from "/pages/view.js";
 
+const mostMoved = 20000; // triangles that software draws ten times a second
+const still = 250; // ms after which what was moved is drawn as it is
 const mostMarks = 20000; // nodes or crosses that are drawn; more could not be told apart
 
 export class Figure {
@@ -22,7 +25,8 @@ export class Figure {
     this.whole = element("figure", { className: "figure" }, element("figcaption", {}, this.title), element("div", { className: "drawn" }, this.frame, element("div", { className: "scale" }, this.scaleBar, this.ticks)), this.readout);
     this.measure();
     try {
-      this.drawing = new Drawing(this.canvas, this.count, () => { this.drawn = {}; this.schedule(); });
+      const moved = this.count > mostMoved ? coarse(result.mesh, this.middle, this.unit) : null;
+      this.drawing = new Drawing(this.canvas, this.count, moved, () => { this.drawn = {}; this.schedule(); });
     } catch (error) {
       this.frame.replaceChildren(element("p", { className: "notice bad" }, error.message));
     }
@@ -85,16 +89,23 @@ export class Figure {
     const key = [field.key, view.smooth, this.other?.name].join();
     if (drawn.values !== key) {
       this.at = this.values(view.smooth);
-      const all = new Float64Array(triangles.length).map((_, i) => this.at(i));
+      const all = new Float64Array(triangles.length);
+      for (let i = 0; i < all.length; ++i) all[i] = this.at(i);
       [this.least, this.most] = extent(all);
       const middle = this.least / 2 + this.most / 2, half = this.most / 2 - this.least / 2 || 1;
       this.normal = (value) => (value - middle) / half;
-      this.drawing?.setValues(Float32Array.from(all, this.normal));
+      const normal = new Float32Array(all.length);
+      for (let i = 0; i < all.length; ++i) normal[i] = (all[i] - middle) / half;
+      this.drawing?.setValues(normal);
       drawn.values = key;
     }
     const shape = `${this.surface && view.smooth}`;
     if (drawn.shape !== shape) {
-      const places = new Float32Array(2 * triangles.length).map((_, i) => (points[2 * triangles[i >> 1] + (i & 1)] - this.middle[i & 1]) / this.unit);
+      const places = new Float32Array(2 * triangles.length), [x, y] = this.middle;
+      for (let i = 0; i < triangles.length; ++i) {
+        places[2 * i] = (points[2 * triangles[i]] - x) / this.unit;
+        places[2 * i + 1] = (points[2 * triangles[i] + 1] - y) / this.unit;
+      }
       this.drawing?.setShape(places, this.shifts());
       drawn.shape = shape;
     }
@@ -111,9 +122,14 @@ export class Figure {
   /// By which corners move: of a body at the points, of a membrane by its displacement as it is, with its jumps.
   shifts() {
     const { mesh: { triangles }, displacement: { at_points: points } } = this.result;
-    if (this.body) return new Float32Array(2 * triangles.length).map((_, i) => points[2 * triangles[i >> 1] + (i & 1)] / this.largest);
+    const shifts = new Float32Array((this.body ? 2 : 1) * triangles.length);
+    if (this.body) {
+      for (let i = 0; i < shifts.length; ++i) shifts[i] = points[2 * triangles[i >> 1] + (i & 1)] / this.largest;
+      return shifts;
+    }
     this.heights = valueAt(this.fields.get("displacement"), this.view.smooth, triangles);
-    return new Float32Array(triangles.length).map((_, i) => (this.heights(i) - this.base) / this.largest);
+    for (let i = 0; i < shifts.length; ++i) shifts[i] = (this.heights(i) - this.base) / this.largest;
+    return shifts;
   }
 
   draw() {
@@ -121,10 +137,8 @@ export class Figure {
     if (!width || !height) return;
     this.prepare();
     const dense = devicePixelRatio || 1;
-    for (const canvas of [this.canvas, this.over]) {
-      const size = [Math.round(width * dense), Math.round(height * dense)];
-      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    }
+    const pixels = [Math.round(width * dense), Math.round(height * dense)];
+    if (this.over.width !== pixels[0] || this.over.height !== pixels[1]) [this.over.width, this.over.height] = pixels;
     this.dense = dense;
     const lifted = this.body ? 0 : this.liftDrawn;
     this.projection = new Projection(view, this.surface, width, height, this.body ? this.size.map((half) => half + 0.5 * this.liftDrawn) : this.size, lifted);
@@ -134,10 +148,24 @@ export class Figure {
       turn: this.projection.turn, frame: this.projection.frame, lift: this.surface || this.body ? this.liftDrawn : 0,
       range: [this.scale.low, this.scale.high].map(this.normal), even: this.field.corners === 1 && !view.smooth, mesh: view.mesh, lit: this.surface,
     };
-    this.drawing?.draw(this.looked);
+    this.moving = this.moves();
+    this.drawing?.draw(this.looked, this.moving, ...pixels);
     this.drawOver();
     if (this.pointer) this.look(...this.pointer);
     this.onDrawn?.();
+  }
+
+  /// Whether a large mesh is seen from elsewhere than last time, or first; then it is drawn once more when nothing has
+  /// moved it for a while.
+  moves() {
+    const { drawn, looked: { turn, frame, lift } } = this, place = [turn, frame, lift].join();
+    const moved = this.drawing?.rough && drawn.place !== place;
+    drawn.place = place;
+    if (moved) {
+      clearTimeout(this.resting);
+      this.resting = setTimeout(() => this.schedule(), still);
+    }
+    return moved;
   }
 
   /// The scale of what is shown, or the range that was fixed.
@@ -186,13 +214,10 @@ export class Figure {
     const pen = this.over.getContext("2d"), style = getComputedStyle(this.frame), { view, result: { mesh, contact = {} } } = this;
     pen.setTransform(this.dense, 0, 0, this.dense, 0, 0);
     pen.clearRect(0, 0, this.frame.clientWidth, this.frame.clientHeight);
-    pen.lineCap = "round";
+    pen.lineCap = pen.lineJoin = "round";
     for (const [name, edges] of Object.entries(mesh.boundary)) {
       pen.beginPath();
-      for (let i = 0; i < edges.length; i += 2) {
-        pen.moveTo(...this.pixelOfPoint(edges[i]));
-        pen.lineTo(...this.pixelOfPoint(edges[i + 1]));
-      }
+      this.trace(pen, edges);
       pen.strokeStyle = style.getPropertyValue(name in contact ? "--accent" : "--quiet");
       pen.lineWidth = name in contact ? 2.5 : 1.2;
       if (!this.surface || name in contact) pen.stroke();
@@ -209,6 +234,17 @@ export class Figure {
       pen.strokeStyle = "#000";
       pen.lineWidth = 1.5;
       pen.stroke();
+    }
+  }
+
+  /// Edges that follow each other are one line, with corners that are not told apart left out.
+  trace(pen, edges) {
+    let at = null;
+    for (let i = 0; i < edges.length; i += 2) {
+      if (i === 0 || edges[i] !== edges[i - 1]) pen.moveTo(...(at = this.pixelOfPoint(edges[i])));
+      const next = this.pixelOfPoint(edges[i + 1]);
+      if (edges[i + 1] === edges[i + 2] && Math.hypot(next[0] - at[0], next[1] - at[1]) < 1.5) continue;
+      pen.lineTo(...(at = next));
     }
   }
 
@@ -308,7 +344,7 @@ export class Figure {
 
   look(x, y) {
     this.pointer = [x, y];
-    if (!this.drawing || !this.looked) return;
+    if (!this.drawing || !this.looked || this.moving) return;
     const t = this.drawing.triangleAt(this.looked, x * this.dense, y * this.dense), before = this.picked;
     this.picked = t;
     if (t < 0) this.readout.textContent = "";
@@ -376,7 +412,7 @@ export class Figure {
 
   /// The picture as it is seen, with its scale.
   async png() {
-    this.draw();
+    do this.draw(); while (this.moving);
     const { width, height } = this.canvas, d = this.dense, wide = 90 * d, whole = element("canvas", { width: width + wide, height: height + 30 * d }), pen = whole.getContext("2d");
     pen.fillStyle = getComputedStyle(this.frame).getPropertyValue("--paper");
     pen.fillRect(0, 0, whole.width, whole.height);
