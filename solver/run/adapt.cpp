@@ -7,6 +7,7 @@
 #include "certify/mark.hpp"
 #include "condensed_problem.hpp"
 #include "data_check.hpp"
+#include "estimate.hpp"
 #include "mesh/bisect.hpp"
 #include "requested_mesh.hpp"
 
@@ -195,6 +196,7 @@ std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, double growth, 
 Solution refine_until_met(const Problem& problem, const Settings& settings, Levels& levels,
                           Progress& progress) {
   const auto most = static_cast<std::size_t>(problem.mesh.adaptive->max_triangles);
+  const double foreseen = estimate(problem).memory_bytes;
   std::shared_ptr<const Mesh> mesh = first_mesh(problem, progress);
   for (;;) {
     Solution solution = solve_level(problem, mesh, levels, settings, progress);
@@ -213,6 +215,13 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +
                                             ": raise mesh.adaptive.max_triangles or its tolerance");
+    const double needed = estimate(problem, *mesh).memory_bytes;
+    if (needed > foreseen)
+      return levels.end_above_tolerance(
+          Outcome::tolerance_not_met,
+          "the next mesh, of " + std::to_string(mesh->triangles.size()) + " triangles, would take " +
+              in_words(needed / 1e6) + " MB, and for mesh.adaptive.max_triangles " +
+              in_words(foreseen / 1e6) + " MB were foreseen: raise that or the tolerance");
   }
 }
 

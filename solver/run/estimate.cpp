@@ -1,3 +1,5 @@
+#include "estimate.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,7 +10,7 @@
 #include "mesh/domain_mesh.hpp"
 #include "mesh/mesh_sizes.hpp"
 #include "mesh/rectangle.hpp"
-#include "solve.hpp"
+#include "mesh/refine.hpp"
 
 namespace signorini {
 namespace {
@@ -20,11 +22,26 @@ struct Counts {
   std::int64_t contact_unknowns = 0;
 };
 
+/// Meshes of so many triangles are cut into pieces to see what their factor takes.
+constexpr std::int64_t most_cut = 4 * few_triangles;
+
+/// The same with edges so many times as long.
+MeshRequest coarser(MeshRequest request, double times) {
+  if (auto* squares = std::get_if<Divisions>(&request.fineness)) {
+    squares->x = static_cast<int>(std::ceil(squares->x / times));
+    squares->y = static_cast<int>(std::ceil(squares->y / times));
+  } else {
+    std::get<LargestEdge>(request.fineness).length *= times;
+  }
+  for (LocalSize& local : request.sizes) local.size *= times;
+  return request;
+}
+
 /// The estimates of a problem by all its meshes and schemes, which have its domain and its conditions in
 /// common.
 class Estimation {
  public:
-  explicit Estimation(const Problem& problem) : problem_(problem), predicted_(problem_.domain) {
+  explicit Estimation(const Problem& problem) : problem_(problem) {
     for (const std::string& name : part_names(problem_.domain)) {
       const auto condition = problem_.boundary.find(name);
       conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
@@ -33,6 +50,9 @@ class Estimation {
 
   /// By its own mesh and scheme.
   Estimate operator()();
+
+  /// On a mesh that is there.
+  Estimate operator()(const Mesh& mesh);
 
   Estimate operator()(const MeshRequest& mesh, Scheme scheme) {
     problem_.mesh = mesh;
@@ -49,18 +69,26 @@ class Estimation {
   }
 
   Counts count();
+  Counts counts_of(const MeshSizes& sizes, std::int64_t contact) const;
+  Estimate estimate_of(const Counts& counts) const;
   template <typename EdgesOfPart>
   void cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
            const EdgesOfPart& edges_of);
+  void cut(const Mesh& mesh);
+  void cut(const MeshData& data);
+  void cut_finer(Mesh mesh, std::int64_t triangles);
+  void cut_coarser(std::int64_t unrefined, std::int64_t triangles);
+  bool has_formula() const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
 
   Problem problem_;
-  const PredictedSizes predicted_;
-  std::vector<const Condition*> conditions_;  ///< of the parts
-  std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
-  std::optional<MeshPieces> pieces_;          ///< of a mesh that is made, or given
+  std::optional<const PredictedSizes> predicted_;  ///< of meshes that are not there
+  std::vector<const Condition*> conditions_;       ///< of the parts
+  std::int64_t may_be_made_ = few_triangles;       ///< together, of meshes that are made to be counted
+  std::int64_t may_be_cut_ = 2 * most_cut;         ///< of those, and of their refinements
+  std::optional<MeshPieces> pieces_;               ///< of a mesh that is made, or given
 };
 
 /// The pieces of a mesh; `edges_of(part)` has pairs of points.
@@ -73,6 +101,61 @@ void Estimation::cut(const std::vector<Point>& points, const std::vector<std::ar
   for (std::size_t part = 0; part < conditions_.size(); ++part)
     boundary.emplace_back(conditions_[part], &edges[part]);
   pieces_.emplace(points, triangles, boundary, components(problem_.material));
+}
+
+void Estimation::cut(const Mesh& mesh) {
+  cut(mesh.points, mesh.triangles, [&](std::size_t part) {
+    MeshPieces::Edges edges;
+    for (const int edge : mesh.boundary[part].edges) edges.push_back(mesh.edges[edge]);
+    return edges;
+  });
+}
+
+/// Uniform refinements are made as long as they have no more triangles than these, and few.
+void Estimation::cut_finer(Mesh mesh, std::int64_t triangles) {
+  const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
+  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) mesh = refine(mesh, 1);
+  may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
+  cut(mesh);
+}
+
+void Estimation::cut(const MeshData& data) {
+  cut(data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; });
+}
+
+/// Whether a formula knows into what pieces its mesh is cut: squares that are nearly squares. Cuts through
+/// others go where they are long, not where there are few.
+bool Estimation::has_formula() const {
+  if (!is_rectangle()) return false;
+  constexpr double nearly = 1.5;
+  const auto& rectangle = std::get<Rectangle>(problem_.domain);
+  const auto [x, y] = divisions(rectangle, problem_.mesh);
+  const double shape = rectangle.size.x() / x / (rectangle.size.y() / y);
+  return shape < nearly && 1 / shape < nearly;
+}
+
+/// By a mesh of the shape of those that it asks for, with edges twice as long, or four times, until it has
+/// few triangles; a rectangle's are made at once.
+void Estimation::cut_coarser(std::int64_t unrefined, std::int64_t triangles) {
+  constexpr int attempts = 3;
+  // An edge of a polygon has triangles to itself, whatever the size.
+  const auto* polygon = std::get_if<Polygon>(&problem_.domain);
+  if (polygon && static_cast<std::int64_t>(polygon->vertices.size()) > few_triangles / 8) return;
+  double times = 1;
+  const auto* rectangle = std::get_if<Rectangle>(&problem_.domain);
+  const double most = static_cast<double>(rectangle ? most_cut : few_triangles);
+  while (static_cast<double>(unrefined) > most * times * times) times *= 2;
+  for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
+    const MeshRequest request = coarser(problem_.mesh, times);
+    std::optional<Mesh> mesh;
+    if (rectangle)
+      mesh = rectangle_mesh(*rectangle, divisions(*rectangle, request), request.pattern);
+    else if ((*predicted_)(request).triangles <= few_triangles)
+      mesh = make_small_mesh(problem_.domain, request);
+    if (!mesh) continue;
+    if (!rectangle) may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+    return cut_finer(std::move(*mesh), triangles);
+  }
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
@@ -117,24 +200,22 @@ std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
 /// Of the mesh that the problem asks for. Small ones are made.
 Counts Estimation::count() {
   std::optional<Mesh> mesh;
-  MeshSizes sizes = predicted_(problem_.mesh);
+  if (!predicted_) predicted_.emplace(problem_.domain);
+  MeshSizes sizes = (*predicted_)(problem_.mesh);
   if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= few_triangles)
     mesh = make_small_mesh(problem_.domain, problem_.mesh);
   if (mesh) {
     may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
     sizes = sizes_of(*mesh);
   }
-  if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
-    if (!pieces_)
-      cut(data->points, data->triangles, [&](std::size_t part) { return data->boundary[part].second; });
-  } else if (mesh) {
-    cut(mesh->points, mesh->triangles, [&](std::size_t part) {
-      MeshPieces::Edges edges;
-      for (const int edge : mesh->boundary[part].edges) edges.push_back(mesh->edges[edge]);
-      return edges;
-    });
+  const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
+  if (mesh) {
+    cut_finer(*mesh, triangles);
+  } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
+    if (!pieces_) cut(*data);
   } else {
     pieces_.reset();
+    if (std::min(may_be_made_, may_be_cut_) > 0 && !has_formula()) cut_coarser(sizes.triangles, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {
@@ -144,7 +225,10 @@ Counts Estimation::count() {
     sizes = refined(sizes, 1);
   }
   if (is_rectangle()) contact = contact_unknowns_of_rectangle(sizes);
+  return counts_of(sizes, contact);
+}
 
+Counts Estimation::counts_of(const MeshSizes& sizes, std::int64_t contact) const {
   Counts counts{sizes.triangles, sizes.edges, sizes.points};
   for (std::size_t part = 0; part < conditions_.size(); ++part) {
     const std::int64_t edges = sizes.parts[part].edges;
@@ -173,9 +257,17 @@ Counts grown(const Counts& start, const Adaptive& goal) {
 }
 
 Estimate Estimation::operator()() {
+  const Counts counts = count();
+  return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts);
+}
+
+Estimate Estimation::operator()(const Mesh& mesh) {
+  cut(mesh);
+  return estimate_of(counts_of(sizes_of(mesh), make_clearance_space(problem_, mesh).unknowns));
+}
+
+Estimate Estimation::estimate_of(const Counts& counts) const {
   const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
-  Counts counts = count();
-  if (problem_.mesh.adaptive) counts = grown(counts, *problem_.mesh.adaptive);
   const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
   Estimate estimate;
   estimate.triangles = counts.triangles;
@@ -205,6 +297,10 @@ Estimate Estimation::operator()() {
 
 Estimate estimate(const Problem& problem) {
   return Estimation(problem)();
+}
+
+Estimate estimate(const Problem& problem, const Mesh& mesh) {
+  return Estimation(problem)(mesh);
 }
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {

@@ -94,10 +94,6 @@ std::array<int, 2> ascending(const std::array<int, 2>& edge) {
 
 }  // namespace
 
-FactorBytes larger(const FactorBytes& a, const FactorBytes& b) {
-  return {std::max(a.panels, b.panels), std::max(a.fronts, b.fronts), std::max(a.stacks, b.stacks)};
-}
-
 FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns) {
   return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular, spaces,
                     triangles, contact_unknowns);

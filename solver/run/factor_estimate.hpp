@@ -17,9 +17,6 @@ struct FactorBytes {
   double stacks = 0;  ///< of what pieces leave, while it is made
 };
 
-/// The larger of each.
-FactorBytes larger(const FactorBytes& a, const FactorBytes& b);
-
 /// Squares of a size, each of a few triangles.
 struct Grid {
   double x, y;

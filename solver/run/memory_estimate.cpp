@@ -23,29 +23,24 @@ bool is_uniform(const VectorField& field) {
   return std::ranges::all_of(field.fields(), &Field::is_constant);
 }
 
-/// A grid of squares of a rectangle, of which few triangles differ.
-bool is_regular(const Problem& problem) {
-  return std::holds_alternative<Rectangle>(problem.domain) && !problem.mesh.adaptive;
-}
-
+/// Where a mesh refines itself is not known. It does so in a few places, which are cheaper to cut than a grid
+/// that is as fine everywhere.
 Grid grid_of(const Problem& problem, double triangles) {
-  if (!is_regular(problem)) {
+  if (!std::holds_alternative<Rectangle>(problem.domain)) {
     const double n = std::sqrt(triangles / 2);
     return {n, n, 1, 1, false};
   }
   const auto& rectangle = std::get<Rectangle>(problem.domain);
-  const Divisions squares = divisions(rectangle, problem.mesh);
-  const double refined = std::exp2(problem.mesh.refine), x = squares.x * refined, y = squares.y * refined;
-  return {x, y, rectangle.size.x() / x, rectangle.size.y() / y, true};
+  const auto [x, y] = divisions(rectangle, problem.mesh);
+  const double finer =
+      problem.mesh.adaptive ? std::sqrt(triangles / 2 / x / y) : std::exp2(problem.mesh.refine);
+  return {finer * x, finer * y, rectangle.size.x() / (finer * x), rectangle.size.y() / (finer * y), true};
 }
 
 FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  const FactorBytes by_grid =
-      factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact);
-  if (sizes.pieces == nullptr || sizes.pieces->empty()) return by_grid;
-  const FactorBytes by_pieces = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
-  // Where a mesh refines itself is not known: it may come to be either.
-  return problem.mesh.adaptive ? larger(by_grid, by_pieces) : by_pieces;
+  return sizes.pieces == nullptr || sizes.pieces->empty()
+             ? factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact)
+             : sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
 }
 
 /// Of a triangle: points, corners, edges and who has them.
@@ -69,27 +64,34 @@ double discretization(const Problem& problem, const Spaces& spaces) {
          kIndex * (own + 1.5) + (is_uniform(problem.body) ? 0 : sizeof(ProjectedLoad));
 }
 
-/// The sum that is factored: numbers and place of a triangle, and its matrix where it shares it with no
-/// other.
-double element_sum(const Spaces& spaces, bool shares) {
-  const double own = dofs_per_triangle(spaces);
-  return kGrowth * (kIndex * (own + 1) + sizeof(Point) + (shares ? 0 : kNumber * own * own));
+/// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
+/// from few are often alike.
+double of_own_shape(const Problem& problem) {
+  if (!is_constant(problem.material) || !std::holds_alternative<Rectangle>(problem.domain)) return 1;
+  constexpr double of_bisected = 0.5;
+  return problem.mesh.adaptive ? of_bisected : 0;
 }
 
-/// What a triangle takes while the pair of an elastic body is relaxed: its form where it shares it with no
-/// other, the slope, its unknowns, and the triangles at half a point.
-double relaxation(bool shares) {
+/// The sum that is factored: numbers and place of a triangle, and the matrix of its shape.
+double element_sum(const Spaces& spaces, double of_own_shape) {
+  const double own = dofs_per_triangle(spaces);
+  return kGrowth * (kIndex * (own + 1) + sizeof(Point) + of_own_shape * kNumber * own * own);
+}
+
+/// What a triangle takes while the pair of an elastic body is relaxed: the form of its shape, the slope, its
+/// unknowns, and the triangles at half a point.
+double relaxation(double of_own_shape) {
   constexpr double at_point = 100, unknowns = 4;
   return kIndex + sizeof(TriangleForms::Vector) + unknowns * (2 * kNumber + kIndex) + at_point / 2 +
-         (shares ? 0 : sizeof(TriangleForms::Matrix));
+         of_own_shape * sizeof(TriangleForms::Matrix);
 }
 
 /// What a triangle takes while the error is bounded: the admissible pair and its shares, and the law if it
 /// varies.
-double certificate(const Problem& problem, const Spaces& spaces, bool shares) {
+double certificate(const Problem& problem, const Spaces& spaces) {
   constexpr double pair = 170, of_cut = 64;
   return pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut) +
-         (spaces.components == 2 ? relaxation(shares) : 0);
+         (spaces.components == 2 ? relaxation(of_own_shape(problem)) : 0);
 }
 
 /// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
@@ -117,14 +119,13 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double kept = made.panels + kGrowth * made.fronts + complement +
                       sizes.triangles * (kMesh + discretization(problem, spaces));
   const double right = kNumber * sizes.system;
-  const bool shares = is_regular(problem) && is_constant(problem.material);
-  const double factoring = made.stacks + complement + right + sizes.triangles * element_sum(spaces, shares);
+  const double factoring =
+      made.stacks + complement + right + sizes.triangles * element_sum(spaces, of_own_shape(problem));
   // The fields as they were found, the solution, and what is made on the way to it.
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
-  const double certifying =
-      2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
-      sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces, shares)) +
-      tables(problem, spaces);
+  const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
+                            sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces)) +
+                            tables(problem, spaces);
   // A mesh that refines itself keeps the solution of the level before.
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) : 0;
   return kSlack * (kept + std::max(factoring, certifying) + before);
@@ -135,9 +136,9 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);
-  return kSlack * (made.panels + kGrowth * made.fronts + made.stacks + 2 * kNumber * sizes.system +
-                   sizes.triangles *
-                       (kMesh + discretization(problem, spaces) + element_sum(spaces, false) + iteration));
+  return kSlack *
+         (made.panels + kGrowth * made.fronts + made.stacks + 2 * kNumber * sizes.system +
+          sizes.triangles * (kMesh + discretization(problem, spaces) + element_sum(spaces, 1) + iteration));
 }
 
 double memory_of_history(int iterations) {

@@ -154,6 +154,7 @@ class Motions {
 
   /// A number that no quotient is below, and hardly above which the least is; 0 if doubles do not tell.
   double least_quotient(Progress& progress) const {
+    if (fills_in(progress)) return 0;
     try {
       double known = kBelow * foreseen(progress);
       for (int tries = 0; tries < kMostTries && std::isfinite(known); ++tries, known /= 2)
@@ -162,6 +163,19 @@ class Motions {
       // Nor is the left side by itself, but for rounding.
     }
     return 0;
+  }
+
+  /// Whether a factor would be several times that of ordinary triangles, as it is of slivers: more than the
+  /// solve is foreseen to have for it (run/memory_estimate.cpp).
+  bool fills_in(Progress& progress) const {
+    const double n = discrete_.triangles(), ordinary = 1.5 * n * std::log2(n + 2), most = 3 * ordinary;
+    double numbers = 0;
+    const Dissection order(quotient(0), 0, progress);
+    order.for_each_piece([&](int piece) {
+      const Dissection::Front front = order.front(piece);
+      numbers += static_cast<double>(front.pivots) * front.size();
+    });
+    return numbers > kOwn * kOwn * most;
   }
 
   bool is_below_all(double number, Progress& progress) const {

@@ -30,7 +30,7 @@ struct UncertainLoads {
 /// n_T the number of edges of T that count, those inside and on Γ_D (where R_T' v stands for 0). With μ the
 /// least of the left side over Σ F_T max_T |R_T v|² the bound is (Σ F_T / μ)^{1/2} for the work on R_T v, and
 /// on each triangle √c_T (3 F K_T / √|T| + 2 Σ F_e k_{T,e} / √|e|) for that on v − R_T v. It does not depend
-/// on the mesh but for its angles.
+/// on the mesh but for its angles. On slivers, of which a factor would fill in, it is infinite.
 ///
 /// `held`: without Γ_D the loads must be balanced; then a triangle of which the motion counts as none, for to
 /// take a rigid motion off v changes nothing. All triangles must hang together with Γ_D or with it.

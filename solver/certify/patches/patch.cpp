@@ -13,6 +13,9 @@ constexpr int kPatchLayers = 2;
 constexpr int kPatchCuts = 3;
 /// Edges on which less than this part of the largest force is moved are left to their surroundings.
 constexpr double kHardlyPatch = 0.1;
+/// A place where contact ends takes some hundred triangles. A larger patch would take more memory than the
+/// solve may have for it (run/memory_estimate.cpp).
+constexpr std::size_t kMostInPatch = 1000;
 
 using PointSet = std::vector<bool>;
 
@@ -21,13 +24,13 @@ double force_moved(const Discretization& discrete, const ContactPressure& pressu
   return discrete.mesh.length(discrete.clearance.edges[i].edge) * std::max(std::abs(first), std::abs(second));
 }
 
-PointSet points_with_changes(const Discretization& discrete, const ContactPressure& pressure) {
+PointSet points_with_changes(const Discretization& discrete, const ContactPressure& pressure, double hardly) {
   const int edges = static_cast<int>(pressure.changes.size());
   double most = 0;
   for (int i = 0; i < edges; ++i) most = std::max(most, force_moved(discrete, pressure, i));
   PointSet points(discrete.mesh.points.size(), false);
   for (int i = 0; i < edges; ++i)
-    if (force_moved(discrete, pressure, i) > kHardlyPatch * most)
+    if (force_moved(discrete, pressure, i) > hardly * most)
       for (const int point : discrete.mesh.edges[discrete.clearance.edges[i].edge]) points[point] = true;
   return points;
 }
@@ -66,12 +69,9 @@ Patch make_patch(const Discretization& discrete, std::vector<int> all, const std
   return {std::make_shared<const Mesh>(std::move(mesh)), std::move(all), std::move(part.cut)};
 }
 
-}  // namespace
-
-std::vector<Patch> patches_where_pressure_changes(const Discretization& discrete,
-                                                  const ContactPressure& pressure) {
+std::vector<Patch> patches(const Discretization& discrete, const ContactPressure& pressure, double hardly) {
   const Mesh& whole = discrete.mesh;
-  PointSet points = points_with_changes(discrete, pressure);
+  PointSet points = points_with_changes(discrete, pressure, hardly);
   const std::vector<int> core = triangles_at(whole, points);
   if (core.empty()) return {};
   std::vector<int> layers = core;
@@ -80,13 +80,24 @@ std::vector<Patch> patches_where_pressure_changes(const Discretization& discrete
       for (const int point : whole.triangles[t]) points[point] = true;
     layers = triangles_at(whole, points);
   }
-  std::vector<Patch> patches;
+  std::vector<Patch> all;
   for (std::vector<int>& piece : bodies(Submesh(whole, layers).mesh)) {
     for (int& t : piece) t = layers[t];
     std::ranges::sort(piece);
-    patches.push_back(make_patch(discrete, std::move(piece), core));
+    all.push_back(make_patch(discrete, std::move(piece), core));
   }
-  return patches;
+  return all;
+}
+
+}  // namespace
+
+std::vector<Patch> patches_where_pressure_changes(const Discretization& discrete,
+                                                  const ContactPressure& pressure) {
+  const auto is_small = [](const Patch& patch) { return patch.parents.size() <= kMostInPatch; };
+  for (double hardly = kHardlyPatch; hardly < 1; hardly *= 2)
+    if (std::vector<Patch> all = patches(discrete, pressure, hardly); std::ranges::all_of(all, is_small))
+      return all;
+  return {};
 }
 
 }  // namespace signorini

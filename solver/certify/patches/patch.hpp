@@ -16,8 +16,8 @@ struct Patch {
 };
 
 /// The patches around the contact edges on which p* is not p_h, but for those on which it hardly differs:
-/// where contact ends. Of two layers of triangles around them the inner one is cut three times, each
-/// time the triangles that lie at Γ_C.
+/// where contact ends. If a patch would be large, it is those on which it differs most. Of two layers of
+/// triangles around them the inner one is cut three times, each time the triangles that lie at Γ_C.
 std::vector<Patch> patches_where_pressure_changes(const Discretization& discrete,
                                                   const ContactPressure& pressure);
 
