@@ -48,6 +48,30 @@ void add_config_file(CLI::App& app) {
   app.allow_config_extras(CLI::config_extras_mode::error);
 }
 
+/// The code that factors, of the service and of the commands that solve without one.
+class FactorizationFlag {
+ public:
+  void add_to(CLI::App& app) {
+    add_flag(app, "--factorization", value_,
+             "Code that factors: ours, or CHOLMOD, within which nothing can be cancelled")
+        ->check(known_);
+  }
+  void add_to_command(CLI::App& command) {
+    command
+        .add_option("--factorization", of_command_, "Code that factors; SIGNORINI_FACTORIZATION if not given")
+        ->check(known_);
+  }
+
+  Factorization value() const {
+    const bool is_cholmod = (of_command_.empty() ? value_ : of_command_) == "cholmod";
+    return is_cholmod ? Factorization::cholmod : Factorization::multifrontal;
+  }
+
+ private:
+  const CLI::IsMember known_{{"multifrontal", "cholmod"}};
+  std::string value_ = "multifrontal", of_command_;
+};
+
 /// A number of bytes with an optional unit: 1048576, 1024kb, 1mb.
 void take_bytes(CLI::Option* option, std::size_t low) {
   option->transform(CLI::AsSizeValue(false));
@@ -174,6 +198,7 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   forget_service_link();
   CommandLine line;
   SolveConfig solve;
+  FactorizationFlag factorization;
   CLI::App app("Signorini: frictionless contact by the dual mixed finite element method, as an HTTP service");
   app.set_version_flag("--version", "signorinid " SIGNORINI_VERSION)->configurable(false);
   add_config_file(app);
@@ -185,15 +210,18 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   add_flag(app, "--log-format", line.config.log_format, "How it is written there")
       ->check(CLI::IsMember({"text", "json"}));
   add_daemon_flags(app, line.config.daemon);
+  factorization.add_to(app);
   StudyConfig study;
-  const CLI::App* solve_command = add_solve(app, solve);
-  const CLI::App* study_command = add_study(app, study);
+  CLI::App* const solve_command = add_solve(app, solve);
+  CLI::App* const study_command = add_study(app, study);
+  for (CLI::App* const command : {solve_command, study_command}) factorization.add_to_command(*command);
   CheckConfig check;
   const CLI::App* check_command = add_check(app, check);
   const CLI::App* health_command = add_command(
       app, "health", "Ask the service on --host and --port whether it lives; exit code 0 if it does");
   try {
     app.parse(argc, argv);
+    line.config.daemon.factorization = solve.factorization = study.factorization = factorization.value();
     if (solve_command->parsed()) line.config.solve = solve;
     if (study_command->parsed()) line.config.study = study;
     if (check_command->parsed()) line.config.check = check;

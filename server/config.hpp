@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "problem/settings.hpp"
 #include "server/machine_memory.hpp"
 
 namespace signorini::server {
@@ -29,6 +30,7 @@ struct DaemonConfig {
   std::vector<std::string> cors_origins;
   std::vector<std::string> allowed_hosts;
   std::int64_t drain_seconds = 20;
+  Factorization factorization = Factorization::multifrontal;
 };
 
 /// `signorinid solve`.
@@ -39,12 +41,14 @@ struct SolveConfig {
   std::string field;   ///< what a picture shows or a CSV has; empty: the displacement, the contact
   std::optional<double> deformed;
   std::string series;  ///< directory for a series of .vtu files; empty: none
+  Factorization factorization = Factorization::multifrontal;
 };
 
 /// `signorinid study`.
 struct StudyConfig {
   std::string file;              ///< `-` is standard input
   std::string format = "table";  ///< or `json` or `csv`
+  Factorization factorization = Factorization::multifrontal;
 };
 
 /// `signorinid check`.

@@ -120,12 +120,12 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
   };
   const auto ended = [&metrics](const Job& job, const Ending& ending) { metrics.ended(job, ending); };
   const auto max_memory = static_cast<double>(config.max_memory);
-  Scheduler scheduler(*store, solve, config.workers, max_memory, ended);
+  Scheduler scheduler(*store, solve, config.workers, max_memory, ended, config.factorization);
   EventStreams events(config.max_subscribers);
   Access access = access_of(config);
-  Service service{
-      *store,    scheduler, events, access, {config.max_body_bytes, config.max_unknowns, max_memory},
-      operators, metrics};
+  Limits limits{config.max_body_bytes, config.max_unknowns, max_memory};
+  limits.factorization = config.factorization;
+  Service service{*store, scheduler, events, access, limits, operators, metrics};
   const Router router = routes(service);
   Listener listener(listener_options(config), router);
   listener.start([&failed] {

@@ -116,7 +116,8 @@ int run_solve(const SolveConfig& config) {
   return run_locally([&] {
     const Form form = form_of(config);
     const std::string text = read_input(config.file);
-    const api::Request request = parse_input(text);
+    api::Request request = parse_input(text);
+    request.settings.factorization = config.factorization;
     require_available(form, request);
     std::optional<Series> series;
     if (!config.series.empty()) series.emplace(config.series);

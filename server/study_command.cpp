@@ -22,7 +22,8 @@ bool write(const Ending& ending, const std::string& format, const api::Sink& sin
 
 int run_study_command(const StudyConfig& config) {
   return run_locally([&] {
-    const api::Request request = parse_input(read_input(config.file));
+    api::Request request = parse_input(read_input(config.file));
+    request.settings.factorization = config.factorization;
     if (!request.study)
       throw BadInput{{"no-study", "The problem has no study",
                       "It needs the member `study`, which gives the meshes and schemes to solve it by."}};

@@ -54,8 +54,8 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     std::shared_ptr<const Mesh> mesh;
     if (!used) mesh = requested_mesh(problem, progress);
     require_sound_data(problem, used ? used->mesh() : *mesh, progress);
-    CondensedProblem condensed =
-        used ? CondensedProblem(problem, used, progress) : CondensedProblem(problem, mesh, progress);
+    CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
+                                      : CondensedProblem(problem, mesh, settings.factorization, progress);
     used = condensed.used_operator();
     if (keeps) cache->keep(problem.operator_key, used);
     solution = condensed.solve(settings, progress);

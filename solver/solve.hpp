@@ -32,11 +32,12 @@ inline constexpr const char* paper_form_needs_one_mesh =
 /// Sizes, exact but for large polygons; memory, as a bound that is at most twice too large for exact sizes;
 /// time, roughly. Makes no large mesh. For a mesh that refines itself all of it is for the largest mesh that
 /// it may become, and the sizes are rough too.
-Estimate estimate(const Problem& problem);
+Estimate estimate(const Problem& problem, Factorization by = Factorization::multifrontal);
 
 /// The same for every run of a study, in the order in which they are solved. It ends behind the run with
 /// which they have more stress unknowns together than `enough`.
 std::vector<Estimate> estimate(const Problem& problem, const Study& study,
+                               Factorization by = Factorization::multifrontal,
                                std::int64_t enough = std::numeric_limits<std::int64_t>::max());
 
 /// The same by a method, with so many entries of a sweep.

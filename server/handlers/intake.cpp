@@ -136,12 +136,14 @@ Intake judge(std::string text, const Request& request, const Limits& limits) {
   Intake intake;
   intake.text = std::move(text);
   intake.request = api::parse_request(intake.text, &observer);
+  intake.request.settings.factorization = limits.factorization;
   observer.check();
   intake.estimate = estimate(intake.request.problem, intake.request.sweep, intake.request.settings);
   require_few_unknowns(intake, limits);
   require_short_sweep(intake, limits);
   if (intake.request.study)
-    intake.runs = estimate(intake.request.problem, *intake.request.study, limits.max_unknowns);
+    intake.runs =
+        estimate(intake.request.problem, *intake.request.study, limits.factorization, limits.max_unknowns);
   for (Estimate& run : intake.runs) run = for_solve(run, intake.request.settings);
   require_short_study(intake, limits);
   require_little_memory(intake, limits);

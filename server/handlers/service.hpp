@@ -22,6 +22,7 @@ struct Limits {
   double max_memory = std::numeric_limits<double>::infinity();  ///< bytes that a solve may take
   std::size_t max_result_bytes = 256 << 20;  ///< of results from which replies are written at the same time
   std::size_t max_waits = 4096;              ///< clients that may wait for their solves at the same time
+  Factorization factorization = Factorization::multifrontal;  ///< by which memory is predicted
 };
 
 /// What the handlers work on.

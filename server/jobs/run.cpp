@@ -99,12 +99,14 @@ Ending ending_of(Solution solution) {
   return ending;
 }
 
-Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory) {
+Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory,
+           Factorization by) {
   if (!claim.problem) return damaged_ending("problem");
   try {
     const MemoryLimit limit(max_memory);
     const auto begin = std::chrono::steady_clock::now();
     api::Request request = api::parse_request(*claim.problem, &live);
+    request.settings.factorization = by;
     request.settings.spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return ending_of(solve(request, live));
   } catch (const Cancelled&) {

@@ -59,10 +59,11 @@ void log_end(const Claim& claim, const Ending& ending) {
 }  // namespace
 
 Scheduler::Scheduler(JobStore& store, SolveFunction solve, int workers, double max_memory,
-                     EndObserver observer)
+                     EndObserver observer, Factorization by)
     : store_(store),
       solve_(std::move(solve)),
       observer_(std::move(observer)),
+      by_(by),
       memory_(max_memory, static_cast<std::size_t>(workers)),
       working_(threads_for(workers)),
       places_(workers) {
@@ -252,7 +253,7 @@ void Scheduler::run_to_end(const Running& running) {
   if (!claim.job.trace.empty()) trace.emplace("trace", claim.job.trace);
   spdlog::info("started");
   count_memory(claim);
-  const Ending ending = run(claim, solve_, *running.live, memory_.left_for(claim.job.id));
+  const Ending ending = run(claim, solve_, *running.live, memory_.left_for(claim.job.id), by_);
   log_end(claim, ending);
   observer_(claim.job, ending);
   const bool small = is_small(ending);
@@ -274,8 +275,9 @@ void Scheduler::give_place() {
 void Scheduler::count_memory(const Claim& claim) {
   if (memory_.knows(claim.job.id) || !claim.problem) return;
   try {
-    const api::Request request = api::parse_request(*claim.problem);
-    auto runs = request.study ? estimate(request.problem, *request.study) : std::vector<Estimate>();
+    api::Request request = api::parse_request(*claim.problem);
+    request.settings.factorization = by_;
+    auto runs = request.study ? estimate(request.problem, *request.study, by_) : std::vector<Estimate>();
     for (Estimate& each : runs) each = for_solve(each, request.settings);
     const Estimate problem = estimate(request.problem, request.sweep, request.settings);
     memory_.add(claim.job.id, memory_with_study(problem, runs), claim.job.owner);

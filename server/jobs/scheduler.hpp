@@ -35,10 +35,12 @@ using EndObserver = std::function<void(const Job& job, const Ending& ending)>;
 /// place to the next one before its end is on the disk.
 class Scheduler {
  public:
-  /// The solves that run at the same time are to take no more than `max_memory` bytes together, as predicted.
+  /// The solves that run at the same time are to take no more than `max_memory` bytes together, as predicted
+  /// for the factorisation.
   Scheduler(
       JobStore& store, SolveFunction solve, int workers,
-      double max_memory = std::numeric_limits<double>::infinity(), EndObserver observer = [](auto&&...) {});
+      double max_memory = std::numeric_limits<double>::infinity(), EndObserver observer = [](auto&&...) {},
+      Factorization by = Factorization::multifrontal);
   ~Scheduler();
 
   Scheduler(const Scheduler&) = delete;
@@ -108,6 +110,7 @@ class Scheduler {
   JobStore& store_;
   const SolveFunction solve_;
   const EndObserver observer_;
+  const Factorization by_;
   MemoryBudget memory_;
 
   std::shared_mutex admission_;  ///< held by those who queue a job, and by drain() alone

@@ -11,7 +11,7 @@ CondensedContact::CondensedContact(const Operator& made, const Eigen::VectorXd& 
 
 Eigen::VectorXd CondensedContact::correction(const Eigen::VectorXd& imbalance, const std::vector<int>& open,
                                              Progress& progress) {
-  const Cholesky::Condensed condensed = factor_.condense(imbalance, workspace_, progress);
+  const Factor::Condensed condensed = factor_.condense(imbalance, workspace_, progress);
   Eigen::VectorXd clearance = Eigen::VectorXd::Zero(contact_.size());
   const Eigen::VectorXd change =
       DenseCholesky(contact_.s, open, progress).solve(condensed.trailing(open), progress);

@@ -25,9 +25,9 @@ class CondensedContact {
                              Progress& progress);
 
  private:
-  const Cholesky& factor_;
-  Cholesky::Workspace workspace_;
-  Cholesky::Condensed right_;
+  const Factor& factor_;
+  Factor::Workspace workspace_;
+  Factor::Condensed right_;
   ContactComplement contact_;
 };
 

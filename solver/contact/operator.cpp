@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "system/dense_cholesky.hpp"
+#include "system/factorize.hpp"
 
 namespace signorini {
 namespace {
@@ -14,7 +15,7 @@ Eigen::VectorXd weights_of(const ClearanceSpace& space) {
   return weight;
 }
 
-/// By more than rounding, as Cholesky demands it of the other unknowns.
+/// By more than rounding, as factorize() demands it of the other unknowns.
 void require_positive_definite(const Eigen::MatrixXd& s, Progress& progress) {
   std::vector<int> all(s.rows());
   std::iota(all.begin(), all.end(), 0);
@@ -27,8 +28,10 @@ void require_positive_definite(const Eigen::MatrixXd& s, Progress& progress) {
 }  // namespace
 
 Operator::Operator(std::shared_ptr<const Mesh> mesh, const ClearanceSpace& space, const ElementSum& matrix,
-                   bool held_by_contact_alone, Progress& progress)
-    : mesh_(std::move(mesh)), factor_(matrix, space.unknowns, progress), weight_(weights_of(space)) {
+                   bool held_by_contact_alone, Factorization by, Progress& progress)
+    : mesh_(std::move(mesh)),
+      factor_(factorize(matrix, space.unknowns, by, progress)),
+      weight_(weights_of(space)) {
   if (!held_by_contact_alone) require_positive_definite(complement(), progress);
 }
 

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "fem/discretization.hpp"
-#include "system/cholesky.hpp"
+#include "problem/settings.hpp"
+#include "system/element_sum.hpp"
+#include "system/factor.hpp"
 
 namespace signorini {
 
@@ -16,13 +18,13 @@ namespace signorini {
 class Operator {
  public:
   /// Factors the matrix of the problem on its mesh. Throws NotPositiveDefinite unless contact alone holds the
-  /// body: then S is only semidefinite. Throws what Cholesky throws besides.
+  /// body: then S is only semidefinite. Throws what factorize() throws besides.
   Operator(std::shared_ptr<const Mesh> mesh, const ClearanceSpace& space, const ElementSum& matrix,
-           bool held_by_contact_alone, Progress& progress);
+           bool held_by_contact_alone, Factorization by, Progress& progress);
 
   const Mesh& mesh() const { return *mesh_; }
   const std::shared_ptr<const Mesh>& shared_mesh() const { return mesh_; }
-  const Cholesky& factor() const { return factor_; }
+  const Factor& factor() const { return factor_; }
   const Eigen::MatrixXd& complement() const { return factor_.complement(); }  ///< S
   const Eigen::VectorXd& weight() const { return weight_; }  ///< <1, φ_i> of the contact unknowns
 
@@ -31,7 +33,7 @@ class Operator {
 
  private:
   std::shared_ptr<const Mesh> mesh_;
-  Cholesky factor_;
+  Factor factor_;
   Eigen::VectorXd weight_;
 };
 

@@ -8,6 +8,7 @@
 #include "contact/residuals.hpp"
 #include "fem/per_shape.hpp"
 #include "system/elimination.hpp"
+#include "system/factorize.hpp"
 
 namespace signorini {
 namespace {
@@ -32,13 +33,14 @@ auto local(const Eigen::MatrixXd& columns, int triangle, int rows) {
 
 }  // namespace
 
-UzawaIteration::UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Progress& progress)
+UzawaIteration::UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Factorization by,
+                               Progress& progress)
     : discrete_(discrete), settings_(settings) {
-  eliminate(progress);
+  eliminate(by, progress);
   start();
 }
 
-void UzawaIteration::eliminate(Progress& progress) {
+void UzawaIteration::eliminate(Factorization by, Progress& progress) {
   const int triangles = discrete_.triangles();
   const int n = discrete_.traces.dofs_per_triangle(), nv = discrete_.spaces().displacements();
   coupling_.resize(n * nv, triangles);
@@ -64,7 +66,7 @@ void UzawaIteration::eliminate(Progress& progress) {
     stiffness_.push_back(shape.stiffness);
   }
   progress.enter(Phase::factorize);
-  factor_ = std::make_unique<const Cholesky>(matrix, 0, progress);
+  factor_ = std::make_unique<const Factor>(factorize(matrix, 0, by, progress));
 }
 
 /// Adds the stiffness of a triangle between its free unknowns; true if all of them are.

@@ -6,7 +6,8 @@
 #include "problem/settings.hpp"
 #include "progress/progress.hpp"
 #include "result/solution.hpp"
-#include "system/cholesky.hpp"
+#include "system/element_sum.hpp"
+#include "system/factor.hpp"
 
 namespace signorini {
 
@@ -19,8 +20,9 @@ namespace signorini {
 /// K_r in the free traces is factored once; one iteration is one solve with it.
 class UzawaIteration {
  public:
-  /// Eliminates and factors. Throws Cancelled and what Cholesky throws.
-  UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Progress& progress);
+  /// Eliminates and factors. Throws Cancelled and what factorize() throws.
+  UzawaIteration(const Discretization& discrete, const PaperUzawa& settings, Factorization by,
+                 Progress& progress);
 
   /// Iterates until the criterion is met, the iterates grow beyond bounds, or a limit is reached. What
   /// remains is the last finite iterate.
@@ -32,7 +34,7 @@ class UzawaIteration {
   const Eigen::VectorXd& coupling() const { return x_; }                 ///< traces and rotations of σ^m
 
  private:
-  void eliminate(Progress& progress);
+  void eliminate(Factorization by, Progress& progress);
   bool add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
   void start();
   void solve_first_equation(Progress& progress);
@@ -45,8 +47,8 @@ class UzawaIteration {
   const Discretization& discrete_;
   const PaperUzawa settings_;
 
-  std::unique_ptr<const Cholesky> factor_;
-  Cholesky::Workspace workspace_;
+  std::unique_ptr<const Factor> factor_;
+  Factor::Workspace workspace_;
   std::vector<LocalMatrix> stiffness_;     ///< K_r of the triangles on Γ_D or Γ_C only
   std::vector<int> stiffness_of_;          ///< its index for each triangle, or -1
   Eigen::MatrixXd coupling_, divergence_;  ///< P and D, a column a triangle

@@ -28,10 +28,15 @@ struct ActiveSet {
 
 using Method = std::variant<Mprgp, PaperUzawa, ActiveSet>;
 
+/// Which code factors: ours or CHOLMOD's. The answers are the same, but for rounding; time and memory are
+/// not.
+enum class Factorization { multifrontal, cholmod };
+
 struct Settings {
   Method method = Mprgp{};
   std::optional<double> time_limit;  ///< seconds for the whole solve
   double spent = 0;  ///< seconds that count for the limit, but were before the solve: reading the problem
+  Factorization factorization = Factorization::multifrontal;  ///< of whoever solves, not of the problem
 };
 
 }  // namespace signorini

@@ -69,7 +69,7 @@ FluxFunctional contact_force_on(const Discretization& discrete, int row) {
 }
 
 Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& discrete,
-                         const Operator& made, Cholesky::Workspace& workspace, Progress& progress) {
+                         const Operator& made, Factor::Workspace& workspace, Progress& progress) {
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(discrete.traces.unknowns());
   for (const auto& [edge, weights] : functional.edges) {
     const int t = triangle_at(discrete, edge);

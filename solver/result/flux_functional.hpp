@@ -30,6 +30,6 @@ FluxFunctional contact_force_on(const Discretization& discrete, int row);
 /// How the functional grows with each contact unknown, everything else at rest: with y the forces K v for its
 /// weights v, this is y_C − K_CI K_II⁻¹ y_I. One forward solve.
 Eigen::VectorXd response(const FluxFunctional& functional, const Discretization& discrete,
-                         const Operator& made, Cholesky::Workspace& workspace, Progress& progress);
+                         const Operator& made, Factor::Workspace& workspace, Progress& progress);
 
 }  // namespace signorini

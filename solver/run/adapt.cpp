@@ -148,7 +148,7 @@ Eigen::VectorXd clearance_near(const std::vector<ContactPart>& coarse, const Dis
 
 Solution solve_level(const Problem& problem, const std::shared_ptr<const Mesh>& mesh, const Levels& coarser,
                      const Settings& settings, Progress& progress) {
-  CondensedProblem condensed(problem, mesh, progress);
+  CondensedProblem condensed(problem, mesh, settings.factorization, progress);
   if (coarser.empty()) return condensed.solve(settings, progress, {});
   return condensed.solve(settings, progress,
                          clearance_near(coarser.finest().contact, condensed.discretization()));
@@ -196,7 +196,7 @@ std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, double growth, 
 Solution refine_until_met(const Problem& problem, const Settings& settings, Levels& levels,
                           Progress& progress) {
   const auto most = static_cast<std::size_t>(problem.mesh.adaptive->max_triangles);
-  const double foreseen = estimate(problem).memory_bytes;
+  const double foreseen = estimate(problem, settings.factorization).memory_bytes;
   std::shared_ptr<const Mesh> mesh = first_mesh(problem, progress);
   for (;;) {
     Solution solution = solve_level(problem, mesh, levels, settings, progress);
@@ -215,7 +215,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +
                                             ": raise mesh.adaptive.max_triangles or its tolerance");
-    const double needed = estimate(problem, *mesh).memory_bytes;
+    const double needed = estimate(problem, *mesh, settings.factorization).memory_bytes;
     if (needed > foreseen)
       return levels.end_above_tolerance(
           Outcome::tolerance_not_met,

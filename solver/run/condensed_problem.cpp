@@ -56,7 +56,7 @@ ContactResult find_clearance(const ContactComplement& contact, const Method& met
   return mprgp(contact, std::get<Mprgp>(method), progress, body, start);
 }
 
-CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh,
+CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Factorization by,
                                    Progress& progress)
     : reused_(false), discretization_(std::make_unique<Discretization>(problem, *mesh, &progress)) {
   const bool held = held_by_contact_alone(*discretization_);
@@ -64,7 +64,7 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
   const HybridSystem system = assemble(*discretization_, progress);
   progress.enter(Phase::factorize);
   operator_ = std::make_shared<const Operator>(std::move(mesh), discretization_->clearance, system.matrix,
-                                               held, progress);
+                                               held, by, progress);
   condensed_ = std::make_unique<CondensedContact>(*operator_, system.right, progress);
 }
 

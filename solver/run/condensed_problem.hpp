@@ -23,8 +23,9 @@ bool is_far(const ClearanceSpace& space, double displacement);
 class CondensedProblem {
  public:
   /// Makes the operator on the mesh, or takes one that was kept; and takes one forward solve. Throws
-  /// Cancelled, SolveError and what Cholesky throws. The problem must outlive it.
-  CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Progress& progress);
+  /// Cancelled, SolveError and what factorize() throws. The problem must outlive it.
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Factorization by,
+                   Progress& progress);
   CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
 
   const Discretization& discretization() const { return *discretization_; }

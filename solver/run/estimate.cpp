@@ -41,7 +41,7 @@ MeshRequest coarser(MeshRequest request, double times) {
 /// common.
 class Estimation {
  public:
-  explicit Estimation(const Problem& problem) : problem_(problem) {
+  Estimation(const Problem& problem, Factorization by) : problem_(problem), by_(by) {
     for (const std::string& name : part_names(problem_.domain)) {
       const auto condition = problem_.boundary.find(name);
       conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
@@ -84,6 +84,7 @@ class Estimation {
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
 
   Problem problem_;
+  const Factorization by_;
   std::optional<const PredictedSizes> predicted_;  ///< of meshes that are not there
   std::vector<const Condition*> conditions_;       ///< of the parts
   std::int64_t may_be_made_ = few_triangles;       ///< together, of meshes that are made to be counted
@@ -285,8 +286,8 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
   const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr};
-  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes);
-  estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes);
+  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
+  estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3);
@@ -295,12 +296,12 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
 
 }  // namespace
 
-Estimate estimate(const Problem& problem) {
-  return Estimation(problem)();
+Estimate estimate(const Problem& problem, Factorization by) {
+  return Estimation(problem, by)();
 }
 
-Estimate estimate(const Problem& problem, const Mesh& mesh) {
-  return Estimation(problem)(mesh);
+Estimate estimate(const Problem& problem, const Mesh& mesh, Factorization by) {
+  return Estimation(problem, by)(mesh);
 }
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
@@ -327,7 +328,7 @@ std::size_t operators_of(const std::vector<Variation>& sweep) {
 }
 
 Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings) {
-  Estimate most = estimate(problem);
+  Estimate most = estimate(problem, settings.factorization);
   most.seconds *= static_cast<double>(1 + operators_of(sweep));
   const auto varies = [](const Variation& variation) {
     return variation.material && !is_constant(*variation.material);
@@ -337,7 +338,7 @@ Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, c
   if (found != sweep.end() && is_constant(problem.material)) {
     Problem varied = problem;
     apply(*found, problem, varied);
-    const Estimate with_it = estimate(varied);
+    const Estimate with_it = estimate(varied, settings.factorization);
     most.memory_bytes = std::max(most.memory_bytes, with_it.memory_bytes);
     most.paper_form_bytes = std::max(most.paper_form_bytes, with_it.paper_form_bytes);
   }
@@ -350,9 +351,10 @@ double memory_with_study(const Estimate& problem, const std::vector<Estimate>& r
   return bytes;
 }
 
-std::vector<Estimate> estimate(const Problem& problem, const Study& study, std::int64_t enough) {
+std::vector<Estimate> estimate(const Problem& problem, const Study& study, Factorization by,
+                               std::int64_t enough) {
   std::vector<Estimate> runs;
-  Estimation estimation(problem);
+  Estimation estimation(problem, by);
   for (const Scheme scheme : study.schemes)
     for (const StudyMesh& mesh : study.meshes) {
       runs.push_back(estimation(mesh.request, scheme));

@@ -6,6 +6,6 @@
 namespace signorini {
 
 /// estimate() on a mesh that is there.
-Estimate estimate(const Problem& problem, const Mesh& mesh);
+Estimate estimate(const Problem& problem, const Mesh& mesh, Factorization by);
 
 }  // namespace signorini

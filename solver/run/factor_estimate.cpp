@@ -211,7 +211,7 @@ FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, dou
       all.panels += kValue * pivots * (pivots + rim);
       all.fronts += kUnknown * (pivots + rim);
     }
-    // As Cholesky's two stacks: one for a piece, the other for its halves.
+    // As the two stacks of multifrontal(): one for a piece, the other for its halves.
     stacks[piece.parity] += rim * rim;
     largest[piece.parity] = std::max(largest[piece.parity], stacks[piece.parity]);
     for (int half = 0; half < 2 && !piece.is_leaf; ++half) {

@@ -10,7 +10,7 @@
 
 namespace signorini {
 
-/// What a factor (system/cholesky.hpp) takes, in bytes.
+/// What a factor (system/multifrontal.hpp) takes, in bytes.
 struct FactorBytes {
   double panels = 0;  ///< of L
   double fronts = 0;  ///< of the numbers of its unknowns

@@ -37,10 +37,21 @@ Grid grid_of(const Problem& problem, double triangles) {
   return {finer * x, finer * y, rectangle.size.x() / (finer * x), rectangle.size.y() / (finer * y), true};
 }
 
-FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
   return sizes.pieces == nullptr || sizes.pieces->empty()
              ? factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact)
              : sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
+}
+
+/// CHOLMOD joins small supernodes and stores the zeros between them: by so many times are its panels larger
+/// than those of the dissection's pieces, at most, as measured.
+constexpr double kJoined = 1.5;
+
+FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                      Factorization by) {
+  FactorBytes made = dissected(problem, spaces, sizes);
+  if (by == Factorization::cholmod) made.panels *= kJoined;
+  return made;
 }
 
 /// Of a triangle: points, corners, edges and who has them.
@@ -78,6 +89,20 @@ double element_sum(const Spaces& spaces, double of_own_shape) {
   return kGrowth * (kIndex * (own + 1) + sizeof(Point) + of_own_shape * kNumber * own * own);
 }
 
+/// What the factorisation takes beside the factor and the sum: its stacks, or the sparse matrix of CHOLMOD.
+/// That is first one of triplets, then put together by rows and by columns; later there are three copies of
+/// it, tables for each unknown, the largest update, and the part of the contact unknowns twice.
+double while_factoring(const FactorBytes& made, const Spaces& spaces, const SolveSizes& sizes,
+                       Factorization by) {
+  if (by == Factorization::multifrontal) return made.stacks;
+  constexpr double triplet = 24, entry = 16, copies = 3, tables_of_unknown = 12 * 8, wide_indices = 2;
+  const double own = dofs_per_triangle(spaces), entries = sizes.triangles * own * (own + 1) / 2;
+  const double assembling = (triplet + 2 * entry) * entries;
+  const double eliminating = copies * entry * entries + made.stacks + wide_indices * made.fronts +
+                             2 * kNumber * sizes.contact * sizes.contact;
+  return tables_of_unknown * sizes.system + std::max(assembling - made.panels, eliminating);
+}
+
 /// What a triangle takes while the pair of an elastic body is relaxed: the form of its shape, the slope, its
 /// unknowns, and the triangles at half a point.
 double relaxation(double of_own_shape) {
@@ -113,14 +138,15 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
   return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
 }
 
-double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  const FactorBytes made = factor_of(problem, spaces, sizes);
+double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                       Factorization by) {
+  const FactorBytes made = factor_of(problem, spaces, sizes, by);
   const double complement = kNumber * sizes.contact * sizes.contact;
   const double kept = made.panels + kGrowth * made.fronts + complement +
                       sizes.triangles * (kMesh + discretization(problem, spaces));
   const double right = kNumber * sizes.system;
-  const double factoring =
-      made.stacks + complement + right + sizes.triangles * element_sum(spaces, of_own_shape(problem));
+  const double factoring = while_factoring(made, spaces, sizes, by) + complement + right +
+                           sizes.triangles * element_sum(spaces, of_own_shape(problem));
   // The fields as they were found, the solution, and what is made on the way to it.
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
   const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
@@ -131,13 +157,16 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   return kSlack * (kept + std::max(factoring, certifying) + before);
 }
 
-double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  const FactorBytes made = factor_of(problem, spaces, {sizes.triangles, sizes.system, 0, sizes.pieces});
+double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                            Factorization by) {
+  const SolveSizes free{sizes.triangles, sizes.system, 0, sizes.pieces};
+  const FactorBytes made = factor_of(problem, spaces, free, by);
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);
   return kSlack *
-         (made.panels + kGrowth * made.fronts + made.stacks + 2 * kNumber * sizes.system +
+         (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
+          2 * kNumber * sizes.system +
           sizes.triangles * (kMesh + discretization(problem, spaces) + element_sum(spaces, 1) + iteration));
 }
 

@@ -3,6 +3,7 @@
 #include "factor_estimate.hpp"
 #include "fem/scheme.hpp"
 #include "problem/problem.hpp"
+#include "problem/settings.hpp"
 
 namespace signorini {
 
@@ -20,10 +21,12 @@ struct SolveSizes {
 ///
 /// The factor is that of system/dissection.hpp: of the pieces of the mesh, or of a grid of the divisions. A
 /// polygon whose mesh is still to be made counts as a square grid.
-double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);
+double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                       Factorization by);
 
 /// The same while the paper's iteration runs.
-double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);
+double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                            Factorization by);
 
 /// The Solution of a solve alone.
 double memory_of_solution(const Spaces& spaces, double triangles);

@@ -15,7 +15,7 @@ Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& setting
   const Discretization problem(posed, mesh, &progress);
   held_by_contact_alone(problem);
   progress.enter(Phase::assemble);
-  UzawaIteration iteration(problem, std::get<PaperUzawa>(settings.method), progress);
+  UzawaIteration iteration(problem, std::get<PaperUzawa>(settings.method), settings.factorization, progress);
   progress.enter(Phase::iterate);
   const Outcome outcome = iteration.run(progress);
   progress.found();
@@ -26,10 +26,10 @@ Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& setting
 
 /// The certificate of the discrete solution, moved to the iterate.
 Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh,
-                            const Solution& iterate, Progress& progress) {
+                            const Solution& iterate, Factorization by, Progress& progress) {
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
-  CondensedProblem condensed(problem, mesh, within);
+  CondensedProblem condensed(problem, mesh, by, within);
   const Fields fields = condensed.find(ActiveSet{}, within);
   const Solution discrete = describe(condensed.discretization(), fields, {ActiveSet{}, std::nullopt}, within);
   Certificate certificate = certify(condensed.discretization(), discrete, fields.coupling, within);
@@ -48,7 +48,8 @@ Solution solve_paper_form(const Problem& problem, const Settings& settings, Prog
   require_sound_data(problem, *mesh, progress);
   Solution solution = iterate(problem, *mesh, settings, progress);
   add_bound(
-      problem, [&] { return certify_iterate(problem, mesh, solution, progress); }, solution, progress);
+      problem, [&] { return certify_iterate(problem, mesh, solution, settings.factorization, progress); },
+      solution, progress);
   return solution;
 }
 

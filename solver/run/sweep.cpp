@@ -77,11 +77,10 @@ struct AffineForce {
 /// A variation that was recovered, and how its numbers change with λ − s.
 class Sweep::Reference {
  public:
-  /// By the operator, or one that is made on the mesh.
-  template <typename OperatorOrMesh>
-  Reference(Problem posed, const std::shared_ptr<const OperatorOrMesh>& given, const Settings& settings,
-            Progress& progress)
-      : problem_(std::move(posed)), condensed_(problem_, given, progress), contact_(condensed_.contact()) {
+  /// `condense(problem)` eliminates.
+  template <typename Condense>
+  Reference(Problem posed, const Condense& condense, const Settings& settings, Progress& progress)
+      : problem_(std::move(posed)), condensed_(condense(problem_)), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
@@ -117,7 +116,7 @@ class Sweep::Reference {
 
   void observe(const Eigen::MatrixXd& stress, Progress& progress) {
     const Discretization& discretization = condensed_.discretization();
-    Cholesky::Workspace workspace;
+    Factor::Workspace workspace;
     const auto affine = [&](const FluxFunctional& functional, bool answers) -> AffineForce {
       const double value = functional(discretization, stress);
       if (!answers) return {value, Eigen::VectorXd::Zero(contact_.size())};
@@ -222,8 +221,11 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress) {
   if (reference_) entry = reference_->with_gaps_of(varied_, settings_, progress);
   if (!entry) {
     reference_.reset();
-    reference_ = operator_ ? std::make_unique<Reference>(varied_, operator_, settings_, progress)
-                           : std::make_unique<Reference>(varied_, mesh_, settings_, progress);
+    const auto condense = [&](const Problem& posed) {
+      return operator_ ? CondensedProblem(posed, operator_, progress)
+                       : CondensedProblem(posed, mesh_, settings_.factorization, progress);
+    };
+    reference_ = std::make_unique<Reference>(varied_, condense, settings_, progress);
     const bool is_known = !variation.material || !variation.material_key.empty();
     operator_ = is_known ? reference_->used_operator() : nullptr;
     material_key_ = variation.material ? variation.material_key : "";

@@ -7,8 +7,8 @@
 
 #include <cblas.h>
 
-#include "system/cholesky.hpp"
 #include "system/elimination_in_blocks.hpp"
+#include "system/factor.hpp"
 #include "system/pace.hpp"
 
 namespace signorini {

@@ -139,9 +139,4 @@ std::vector<int> Dissection::left_by_halves(int piece) const {
   return found;
 }
 
-std::size_t Dissection::bytes() const {
-  const std::size_t numbers = elements_.capacity() + eliminated_in_.capacity() + unknowns_.capacity();
-  return numbers * sizeof(int) + places_.capacity() * sizeof(Place);
-}
-
 }  // namespace signorini

@@ -42,8 +42,10 @@ class Dissection {
     return std::span(elements_).subspan(first_element(leaf), first_element(leaf + 1) - first_element(leaf));
   }
 
-  /// The memory that it takes.
-  std::size_t bytes() const;
+  /// The unknowns of all fronts, and where those of a piece begin among them. Whoever takes them leaves no
+  /// fronts.
+  std::vector<int> take_unknowns() { return std::move(unknowns_); }
+  std::size_t first_unknown(int piece) const { return places_[piece].first; }
 
   /// Calls visit with every piece, the halves before the whole.
   template <typename Visit>

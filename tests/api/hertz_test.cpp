@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "../problems/same_answers.hpp"
 #include "../problems/sanitized.hpp"
 #include "api/examples.hpp"
 #include "api/problem/problem_json.hpp"
@@ -35,6 +36,14 @@ TEST(Hertz, HalfDiscAgainstIndependentValues) {
   EXPECT_NEAR(summary.contact.force / 1.056127, 1, 0.0005);
   EXPECT_NEAR(summary.contact.max_pressure / 8.6125, 1, 0.003);
   EXPECT_NEAR(summary.contact.length / 2, 0.078008, 0.01 * 0.078008 + kEdge);
+}
+
+TEST(Hertz, IsTheSameByBothFactorisations) {
+  Request request = half_disc();
+  request.problem.mesh.sizes[0].size = sanitized ? 0.05 : 0.01;
+  const Solution ours = solve(request.problem, request.settings);
+  request.settings.factorization = Factorization::cholmod;
+  expect_same_answers(solve(request.problem, request.settings), ours);
 }
 
 /// The peak of Hertz's pressure for the same force on the same body.

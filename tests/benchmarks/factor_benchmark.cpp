@@ -1,16 +1,19 @@
-/// The factorisation beside bare CHOLMOD on the same matrix, from its elements to one solution: CHOLMOD puts
-/// the matrix together, orders it by AMD with no regard to contact, factors by supernodes and solves. Seconds
-/// on the BLAS threads of OPENBLAS_NUM_THREADS. And the whole solve of the same problem: mesh, elements,
-/// factor, contact, fields, residuals and the bound.
+/// Our factorisation beside CHOLMOD's, in our order and in its own, on the same matrix, from its elements to
+/// the contact complement and one solution. Seconds on the BLAS threads of OPENBLAS_NUM_THREADS, memory of
+/// the factor and at its peak, and operations in the panels. And the whole solve of the same problem: mesh,
+/// elements, factor, contact, fields, residuals and the bound.
+
+#include <cmath>
 
 #include <benchmark/benchmark.h>
-#include <cholmod.h>
 
 #include "mesh/domain_mesh.hpp"
 #include "problems/elasticity.hpp"
+#include "progress/memory_meter.hpp"
 #include "solve.hpp"
-#include "system/cholesky.hpp"
+#include "system/cholmod.hpp"
 #include "system/hybrid_system.hpp"
+#include "system/multifrontal.hpp"
 
 namespace signorini {
 namespace {
@@ -36,65 +39,42 @@ Problem membrane(int n) {
 Problem elastic_block(int n) {
   Problem problem = problems::pressed_block(Scheme::nonconforming, Pattern::right, 0.3, 1);
   problem.mesh.fineness = Divisions{n, n};
-  problem.boundary["left"] =
-      Fixed{};  // held by contact alone, the matrix would be singular, no food for CHOLMOD
+  problem.boundary["left"] = Fixed{};
   return problem;
 }
 
-void factor(benchmark::State& state, Problem (*make)(int)) {
+using Way = Factor (*)(const ElementSum&, int trailing, Progress&);
+
+Factor cholmod_given(const ElementSum& matrix, int trailing, Progress& progress) {
+  return cholmod(matrix, trailing, progress, CholmodOrder::given);
+}
+Factor cholmod_own(const ElementSum& matrix, int trailing, Progress& progress) {
+  return cholmod(matrix, trailing, progress, CholmodOrder::own);
+}
+
+/// Multiplications and additions of an elimination by these panels.
+double products(const Panels& panels) {
+  double sum = 0;
+  for (const Panels::Panel& panel : panels.all)
+    for (int k = 0; k < panel.pivots; ++k) sum += std::pow(panel.size - k, 2);
+  return sum;
+}
+
+void factor(benchmark::State& state, Way way, Problem (*make)(int)) {
   const AssembledProblem assembled(make(static_cast<int>(state.range(0))));
   const Eigen::VectorXd closed = Eigen::VectorXd::Zero(assembled.contact_unknowns);
   Observer indifferent;
   for (auto _ : state) {
+    const MemoryMeter memory;
     Progress progress(indifferent, {});
-    const Cholesky factor(assembled.system.matrix, assembled.contact_unknowns, progress);
-    Cholesky::Workspace workspace;
+    const Factor factor = way(assembled.system.matrix, assembled.contact_unknowns, progress);
+    Factor::Workspace workspace;
     benchmark::DoNotOptimize(factor.expand(factor.condense(assembled.system.right, workspace, progress),
                                            closed, workspace, progress));
+    state.counters["megabytes"] = static_cast<double>(factor.bytes()) / 1e6;
+    state.counters["peak_megabytes"] = static_cast<double>(memory.peak()) / 1e6;
+    state.counters["gigaflops"] = products(factor.panels()) / 1e9;
   }
-  state.counters["unknowns"] = assembled.system.matrix.size;
-}
-
-cholmod_sparse* put_together(const ElementSum& sum, cholmod_common& common) {
-  const std::size_t n = sum.per_element, size = sum.size;
-  cholmod_triplet* triplets =
-      cholmod_allocate_triplet(size, size, sum.elements() * n * (n + 1) / 2, -1, CHOLMOD_REAL, &common);
-  std::size_t& count = triplets->nnz;
-  for (int element = 0; element < sum.elements(); ++element) {
-    const auto unknowns = sum.unknowns_of(element);
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = j; i < n; ++i) {
-        if (unknowns[i] < 0 || unknowns[j] < 0) continue;
-        static_cast<int*>(triplets->i)[count] = std::max(unknowns[i], unknowns[j]);
-        static_cast<int*>(triplets->j)[count] = std::min(unknowns[i], unknowns[j]);
-        static_cast<double*>(triplets->x)[count++] = sum.matrix(element)[j * n + i];
-      }
-  }
-  cholmod_sparse* matrix = cholmod_triplet_to_sparse(triplets, 0, &common);
-  cholmod_free_triplet(&triplets, &common);
-  return matrix;
-}
-
-void bare_cholmod(benchmark::State& state, Problem (*make)(int)) {
-  const AssembledProblem assembled(make(static_cast<int>(state.range(0))));
-  cholmod_common common;
-  cholmod_start(&common);
-  common.supernodal = CHOLMOD_SUPERNODAL;
-  common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_AMD;
-  cholmod_dense* right = cholmod_ones(assembled.system.matrix.size, 1, CHOLMOD_REAL, &common);
-  for (auto _ : state) {
-    cholmod_sparse* matrix = put_together(assembled.system.matrix, common);
-    cholmod_factor* factor = cholmod_analyze(matrix, &common);
-    cholmod_factorize(matrix, factor, &common);
-    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor, right, &common);
-    benchmark::DoNotOptimize(solution->x);
-    cholmod_free_dense(&solution, &common);
-    cholmod_free_factor(&factor, &common);
-    cholmod_free_sparse(&matrix, &common);
-  }
-  cholmod_free_dense(&right, &common);
-  cholmod_finish(&common);
   state.counters["unknowns"] = assembled.system.matrix.size;
 }
 
@@ -115,11 +95,13 @@ void sizes(benchmark::internal::Benchmark* each) {
   each->RangeMultiplier(2)->Range(smallest, largest)->Unit(benchmark::kMillisecond);
 }
 
-BENCHMARK_CAPTURE(factor, membrane, membrane)->Apply(sizes<128, 1024>);
-BENCHMARK_CAPTURE(bare_cholmod, membrane, membrane)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, multifrontal_membrane, multifrontal, membrane)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, cholmod_given_membrane, cholmod_given, membrane)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, cholmod_own_membrane, cholmod_own, membrane)->Apply(sizes<128, 1024>);
 BENCHMARK_CAPTURE(whole_solve, membrane, membrane)->Apply(sizes<128, 1024>);
-BENCHMARK_CAPTURE(factor, elastic_block, elastic_block)->Apply(sizes<128, 1024>);
-BENCHMARK_CAPTURE(bare_cholmod, elastic_block, elastic_block)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, multifrontal_elastic_block, multifrontal, elastic_block)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, cholmod_given_elastic_block, cholmod_given, elastic_block)->Apply(sizes<128, 1024>);
+BENCHMARK_CAPTURE(factor, cholmod_own_elastic_block, cholmod_own, elastic_block)->Apply(sizes<128, 1024>);
 BENCHMARK_CAPTURE(whole_solve, elastic_block, elastic_block)->Apply(sizes<128, 1024>);
 
 }  // namespace

@@ -77,6 +77,8 @@ TEST(Config, RefusesBadFlagsWithExitCode2) {
                                              {"--max-memory", "1"},
                                              {"--rate", "-1"},
                                              {"--max-subscribers", "0"},
+                                             {"--factorization", "lu"},
+                                             {"solve", "--factorization", "lu", "-"},
                                              {"solve"},
                                              {"solve", "a", "b"},
                                              {"stray"}}) {
@@ -148,6 +150,26 @@ TEST(Config, IsPrintedAsAFileThatCanBeReadBack) {
   EXPECT_EQ(line.config.daemon.keep_bytes, std::size_t{3} << 10);
   EXPECT_EQ(line.config.daemon.data_dir, "a b");
   EXPECT_EQ(line.config.log_format, "json");
+}
+
+TEST(Config, NamesTheFactorisationOfTheServiceAndOfTheCommands) {
+  EXPECT_EQ(read({}).config.daemon.factorization, Factorization::multifrontal);
+  EXPECT_EQ(read({"--factorization", "cholmod"}).config.daemon.factorization, Factorization::cholmod);
+  EXPECT_EQ(read({"solve", "-"}).config.solve->factorization, Factorization::multifrontal);
+  EXPECT_EQ(read({"solve", "--factorization", "cholmod", "-"}).config.solve->factorization,
+            Factorization::cholmod);
+  EXPECT_EQ(read({"--factorization", "cholmod", "study", "-"}).config.study->factorization,
+            Factorization::cholmod);
+  setenv("SIGNORINI_FACTORIZATION", "cholmod", 1);
+  EXPECT_EQ(read({}).config.daemon.factorization, Factorization::cholmod);
+  EXPECT_EQ(read({"solve", "-"}).config.solve->factorization, Factorization::cholmod);
+  EXPECT_EQ(read({"solve", "--factorization", "multifrontal", "-"}).config.solve->factorization,
+            Factorization::multifrontal);
+  setenv("SIGNORINI_FACTORIZATION", "lu", 1);
+  EXPECT_EQ(read({}).exit_code, 2);
+  unsetenv("SIGNORINI_FACTORIZATION");
+  const ConfigFile file("factorization = \"cholmod\"\n");
+  EXPECT_EQ(read({"--config", file.path()}).config.daemon.factorization, Factorization::cholmod);
 }
 
 TEST(Config, ReadsTheSolveCommand) {

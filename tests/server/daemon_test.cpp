@@ -376,6 +376,53 @@ TEST(SolveCommand, DrawsAPicture) {
   EXPECT_TRUE(process.standard_output().ends_with("</svg>\n"));
 }
 
+/// The summary of a result, and how many times its memory is that of the other.
+void expect_other_factor(const json& summary, const json& other) {
+  const double energy = other.at("energy");
+  EXPECT_NEAR(summary.at("energy").get<double>(), energy, 1e-10 * std::abs(energy));
+  if (sanitized) return;  // a sanitizer has an allocator of its own
+  const double ratio =
+      summary.at("peak_memory_bytes").get<double>() / other.at("peak_memory_bytes").get<double>();
+  EXPECT_GT(ratio, 1.1);
+}
+
+TEST(SolveCommand, FactorsAsItIsAskedTo) {
+  const auto summary = [](std::vector<std::string> flags, const std::vector<std::string>& launcher = {}) {
+    flags.insert(flags.begin(), {"solve", "--fields", "summary"});
+    flags.push_back("-");
+    ChildProcess process(flags, paper_problem(64).dump(), launcher);
+    EXPECT_EQ(process.wait(60s), 0) << process.standard_error();
+    return json::parse(process.standard_output()).at("summary");
+  };
+  const json ours = summary({});
+  expect_other_factor(summary({"--factorization", "cholmod"}), ours);
+  const std::vector<std::string> launcher{"env", "SIGNORINI_FACTORIZATION=cholmod"};
+  expect_other_factor(summary({}, launcher), ours);
+  expect_other_factor(summary({}, launcher), summary({"--factorization", "multifrontal"}, launcher));
+}
+
+TEST_F(DaemonTest, FactorsAsItIsAskedTo) {
+  Daemon other({"--factorization", "cholmod"});
+  httplib::Client client("127.0.0.1", other.port());
+  client.set_read_timeout(100);
+  const std::string problem = paper_problem(64).dump();
+  const auto solved = [&](httplib::Client& by) {
+    const json result =
+        json::parse(by.Post("/v1/solves?wait=60&fields=summary", problem, "application/json")->body);
+    EXPECT_EQ(result.at("status"), "succeeded");
+    return result.at("summary");
+  };
+  const auto predicted = [&](httplib::Client& by) {
+    const json estimated =
+        json::parse(by.Post("/v1/validate", problem, "application/json")->body).at("estimated");
+    return estimated.at("memory_bytes").get<double>();
+  };
+  const json ours = solved(client_), cholmods = solved(client);
+  expect_other_factor(cholmods, ours);
+  EXPECT_GT(predicted(client), predicted(client_));
+  EXPECT_GE(predicted(client), cholmods.at("peak_memory_bytes").get<double>());
+}
+
 TEST(SolveCommand, AnIterationThatDoesNotEndIsServedWithExitCode1) {
   json problem = example("paper-nonconforming");
   problem["solver"]["max_iterations"] = 3;

@@ -69,7 +69,7 @@ class UntilLevel : public Observer {
 };
 
 TEST(Mark, TakesTheFewestTrianglesThatMakeUpHalf) {
-  const Eigen::VectorXd squares = (Eigen::VectorXd(5) << 1, 4, 0.5, 2, 0.5).finished();
+  const Eigen::VectorXd squares{{1, 4, 0.5, 2, 0.5}};
   EXPECT_EQ(mark(squares), std::vector<int>{1});
   EXPECT_EQ(mark(squares, 0.75), (std::vector<int>{1, 3}));
   EXPECT_EQ(mark(squares, 1).size(), 5u);

@@ -72,7 +72,8 @@ class CertificateFields {
   CertificateFields(const Problem& problem, const std::shared_ptr<const Mesh>& mesh)
       : mesh_(mesh), discretization_(problem, *mesh), progress_(observer_, std::nullopt) {
     const HybridSystem system = assemble(discretization_, progress_);
-    const Operator made(mesh, discretization_.clearance, system.matrix, false, progress_);
+    const Operator made(mesh, discretization_.clearance, system.matrix, false, Factorization::multifrontal,
+                        progress_);
     CondensedContact condensed(made, system.right, progress_);
     const ContactResult found = active_set(condensed.contact(), {}, progress_);
     const Eigen::VectorXd x = condensed.traces(found.clearance, progress_);

@@ -291,6 +291,38 @@ TEST_P(Memory, OfThePapersIteration) {
   expect_bound(elastic(GetParam(), n, n), {few, std::nullopt});
 }
 
+/// CHOLMOD's copies of the matrix are foreseen as if no two triangles shared an unknown.
+TEST_P(Memory, OfCholmodIsNotExceeded) {
+  constexpr auto by = Factorization::cholmod;
+  const Settings settings{ActiveSet{}, std::nullopt, 0, by};
+  const auto expect = [&](const Problem& problem, const Settings& how) {
+    const double predicted = for_solve(estimate(problem, by), how).memory_bytes;
+    const auto peak = static_cast<double>(solve(problem, how).summary.peak_memory_bytes);
+    EXPECT_LE(peak, predicted);
+    EXPECT_GE(peak + tables, predicted / 3);
+  };
+  const std::vector<int> sizes =
+      long_tests() ? std::vector{12, 32, 50, 64, 100, 128, 200} : std::vector{12, 32, 50};
+  for (const int n : sizes) {
+    SCOPED_TRACE(n);
+    expect(membrane(GetParam(), n, n), settings);
+    expect(elastic(GetParam(), n, n), settings);
+  }
+  expect(in_polygon(elastic(GetParam(), 1, 1), long_tests() ? 0.01 : 0.05), settings);
+  Problem strip = membrane(GetParam(), 400, 4);
+  std::get<Rectangle>(strip.domain).size.x() = 100;
+  expect(strip, settings);
+  Problem given = membrane(GetParam(), 1, 1);
+  given.domain = imported(8, 200, stays);
+  given.body = Field(-10);
+  expect(given, settings);
+  PaperUzawa few;
+  few.rho = 1e-3;
+  few.augmentation = 1;
+  few.max_iterations = 5;
+  expect(membrane(GetParam(), 24, 24), {few, std::nullopt, 0, by});
+}
+
 /// Each has rings of triangles around it, from its size to that of the mesh.
 TEST_P(Memory, OfTinyHolesFarFromEachOther) {
   constexpr int row = 12;

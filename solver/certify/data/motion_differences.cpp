@@ -7,7 +7,8 @@
 
 #include "certify/data/linear_remainder.hpp"
 #include "fem/couple.hpp"
-#include "system/cholesky.hpp"
+#include "system/dissection.hpp"
+#include "system/multifrontal.hpp"
 
 namespace signorini {
 namespace {
@@ -180,7 +181,7 @@ class Motions {
 
   bool is_below_all(double number, Progress& progress) const {
     try {
-      const Cholesky proof(quotient(number), 0, progress);
+      multifrontal(quotient(number), 0, progress);
       return true;
     } catch (const NotPositiveDefinite&) {
       return false;
@@ -192,8 +193,8 @@ class Motions {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(size());
     for (int t = 0; t < discrete_.triangles(); ++t)
       if (first(t) >= 0) squares.segment<kOwn>(first(t)) = force_on(t) * largest_square();
-    const Cholesky factor(quotient(0), 0, progress);
-    Cholesky::Workspace workspace;
+    const Factor factor = multifrontal(quotient(0), 0, progress);
+    Factor::Workspace workspace;
     std::mt19937 engine(1);
     Eigen::VectorXd motion(size());
     for (double& own : motion) own = std::uniform_real_distribution<>(0.5, 1)(engine);

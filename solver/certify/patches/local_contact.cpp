@@ -27,7 +27,8 @@ LocalContact::LocalContact(const Discretization& whole, const Patch& patch, cons
   discretization_.draw_near(whole.clearance.reach);
   const bool held = held_by_contact_alone(discretization_);
   const HybridSystem system = assemble(discretization_, progress);
-  const Operator made(patch.mesh, discretization_.clearance, system.matrix, held, progress);
+  const Operator made(patch.mesh, discretization_.clearance, system.matrix, held, Factorization::multifrontal,
+                      progress);
   CondensedContact condensed(made, system.right, progress);
   Eigen::VectorXd found;
   if (discretization_.clearance.unknowns > 0) found = active_set(condensed.contact(), {}, progress).clearance;

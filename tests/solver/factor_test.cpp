@@ -1,6 +1,8 @@
-// The sparse factorisation against dense algebra.
+// The sparse factorisations against dense algebra.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -8,11 +10,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "system/cholesky.hpp"
+#include "system/cholmod.hpp"
 #include "system/dense_cholesky.hpp"
+#include "system/multifrontal.hpp"
 #include "system/symmetric_product.hpp"
 
-namespace signorini::cholesky_test {
+namespace signorini::factor_test {
 namespace {
 
 /// A symmetric matrix whose unknowns lie at points, as a sum of elements.
@@ -98,16 +101,40 @@ PlacedMatrix side_by_side(const PlacedMatrix& a, const PlacedMatrix& b, int last
   return all;
 }
 
-Cholesky factor_of(const PlacedMatrix& matrix, int trailing) {
-  Observer indifferent;
-  Progress progress(indifferent, {});
-  return Cholesky(matrix.sum(), trailing, progress);
+/// One of the ways to a factor.
+struct Way {
+  const char* name;
+  std::function<Factor(const ElementSum&, int trailing, Progress&)> factor;
+
+  friend void PrintTo(const Way& printed, std::ostream* out) { *out << printed.name; }
+};
+
+Way by_cholmod(const char* name, CholmodOrder order) {
+  return {name, [order](const ElementSum& sum, int trailing, Progress& progress) {
+            return cholmod(sum, trailing, progress, order);
+          }};
 }
 
-void expect_dense_answers(const PlacedMatrix& matrix, int trailing) {
+class SparseFactor : public testing::TestWithParam<Way> {
+ protected:
+  static Factor factor_of(const PlacedMatrix& matrix, int trailing) {
+    Observer indifferent;
+    Progress progress(indifferent, {});
+    return GetParam().factor(matrix.sum(), trailing, progress);
+  }
+  static void expect_dense_answers(const PlacedMatrix& matrix, int trailing);
+};
+
+INSTANTIATE_TEST_SUITE_P(Ways, SparseFactor,
+                         testing::Values(Way{"Multifrontal", multifrontal},
+                                         by_cholmod("CholmodInGivenOrder", CholmodOrder::given),
+                                         by_cholmod("CholmodInOwnOrder", CholmodOrder::own)),
+                         [](const auto& way) { return way.param.name; });
+
+void SparseFactor::expect_dense_answers(const PlacedMatrix& matrix, int trailing) {
   const Eigen::MatrixXd& k = matrix.k;
   const int leading = matrix.leading(trailing);
-  const Cholesky factor = factor_of(matrix, trailing);
+  const Factor factor = factor_of(matrix, trailing);
   const auto inner = k.topLeftCorner(leading, leading).ldlt();
   const Eigen::MatrixXd coupling = k.topRightCorner(leading, trailing);
   const Eigen::MatrixXd complement =
@@ -115,10 +142,10 @@ void expect_dense_answers(const PlacedMatrix& matrix, int trailing) {
   EXPECT_LT((factor.complement() - complement).norm(), 1e-10);
 
   const Eigen::VectorXd b = Eigen::VectorXd::Random(k.rows());
-  Cholesky::Workspace workspace;
+  Factor::Workspace workspace;
   Observer indifferent;
   Progress progress(indifferent, {});
-  const Cholesky::Condensed condensed = factor.condense(b, workspace, progress);
+  const Factor::Condensed condensed = factor.condense(b, workspace, progress);
   const Eigen::VectorXd right = b.tail(trailing) - coupling.transpose() * inner.solve(b.head(leading));
   EXPECT_LT((condensed.trailing - right).norm(), 1e-10);
 
@@ -128,36 +155,39 @@ void expect_dense_answers(const PlacedMatrix& matrix, int trailing) {
   EXPECT_LT((expanded.head(leading) - inner.solve(b.head(leading) - coupling * given)).norm(), 1e-10);
 }
 
-TEST(Cholesky, ComplementAndSolvesAgreeWithDenseAlgebra) {
+TEST_P(SparseFactor, ComplementAndSolvesAgreeWithDenseAlgebra) {
   for (const int trailing : {0, 1, 7, 40}) expect_dense_answers(random_matrix(16, 3 + trailing), trailing);
 }
 
-TEST(Cholesky, FactorsFrontsOfManyColumns) {
+TEST_P(SparseFactor, FactorsFrontsOfManyColumns) {
   for (const int trailing : {0, 40}) expect_dense_answers(dense_matrix(600), trailing);
 }
 
-TEST(Cholesky, SplitsIntoPiecesWhereTheMatrixDoes) {
+TEST_P(SparseFactor, SplitsIntoPiecesWhereTheMatrixDoes) {
   expect_dense_answers(side_by_side(random_matrix(5, 1), random_matrix(7, 2), 3), 6);
 }
 
-TEST(Cholesky, SolvesInPlace) {
+TEST_P(SparseFactor, SolvesInPlace) {
   const PlacedMatrix matrix = random_matrix(16, 4);
   const Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.size());
   Eigen::VectorXd x = b;
-  Cholesky::Workspace workspace;
+  Factor::Workspace workspace;
   Observer indifferent;
   Progress progress(indifferent, {});
   factor_of(matrix, 0).solve(x, workspace, progress);
   EXPECT_LT((matrix.k * x - b).norm(), 1e-11);
 }
 
-TEST(Cholesky, TellsWhatIsNotPositiveDefinite) {
+TEST_P(SparseFactor, TellsWhatIsNotPositiveDefinite) {
   PlacedMatrix negative = random_matrix(6, 1);
   negative.k(17, 17) = -1;
   EXPECT_THROW(factor_of(negative, 4), NotPositiveDefinite);
   PlacedMatrix large_and_negative = dense_matrix(300);
   large_and_negative.k(280, 280) = -1;
   EXPECT_THROW(factor_of(large_and_negative, 4), NotPositiveDefinite);
+  PlacedMatrix indefinite = random_matrix(6, 1);
+  indefinite.k(17, 18) = indefinite.k(18, 17) = 100;
+  EXPECT_THROW(factor_of(indefinite, 4), NotPositiveDefinite);
   PlacedMatrix almost_singular = random_matrix(6, 1);
   // Two unknowns so stiffly tied that eliminating the one leaves 1e-15 of the entry of the other.
   almost_singular.k({17, 18}, {17, 18}) += 1e15 * Eigen::Matrix2d{{1, -1}, {-1, 1}};
@@ -169,29 +199,41 @@ TEST(Cholesky, TellsWhatIsNotPositiveDefinite) {
   ++with_empty_row.size;
   Observer indifferent;
   Progress progress(indifferent, {});
-  EXPECT_THROW(Cholesky(with_empty_row, 0, progress), NotPositiveDefinite);
-  EXPECT_THROW(Cholesky(with_empty_row, 1, progress), NotPositiveDefinite);
+  EXPECT_THROW(GetParam().factor(with_empty_row, 0, progress), NotPositiveDefinite);
+  EXPECT_THROW(GetParam().factor(with_empty_row, 1, progress), NotPositiveDefinite);
 }
 
-TEST(Cholesky, EndsWhenTheObserverDoes) {
+/// As where contact alone holds a body: K 1 = 0, and so is S 1.
+TEST_P(SparseFactor, LeavesASingularComplement) {
+  constexpr int trailing = 12;
+  PlacedMatrix singular = random_matrix(16, 7);
+  singular.k.diagonal().array() -= singular.k.rowwise().sum().array();
+  const Eigen::MatrixXd s = factor_of(singular, trailing).complement();
+  const double size = singular.k.diagonal().maxCoeff();
+  EXPECT_LT(s.rowwise().sum().cwiseAbs().maxCoeff(), 1e-13 * size);
+  EXPECT_GT(s.diagonal().minCoeff(), 1e-3 * size);
+  expect_dense_answers(singular, trailing);
+}
+
+TEST_P(SparseFactor, EndsWhenTheObserverDoes) {
   struct Impatient : Observer {
     int left = 5;
     bool keep_going() override { return --left > 0; }
   } impatient;
   Progress progress(impatient, {});
-  EXPECT_THROW(Cholesky(random_matrix(16, 1).sum(), 4, progress), Cancelled);
+  EXPECT_THROW(GetParam().factor(random_matrix(16, 1).sum(), 4, progress), Cancelled);
 }
 
-TEST(Cholesky, ALongSolveEndsWhenTheObserverDoes) {
+TEST_P(SparseFactor, ALongSolveEndsWhenTheObserverDoes) {
   constexpr int n = 550;
   PlacedMatrix matrix{Eigen::MatrixXd::Ones(n, n) + Eigen::MatrixXd::Identity(n, n), {}};
   for (int i = 0; i < n; ++i) matrix.points.emplace_back(i, 0);
-  const Cholesky factor = factor_of(matrix, 0);
+  const Factor factor = factor_of(matrix, 0);
   struct Unwilling : Observer {
     bool keep_going() override { return false; }
   } unwilling;
   Progress progress(unwilling, {});
-  Cholesky::Workspace workspace;
+  Factor::Workspace workspace;
   Eigen::VectorXd x = Eigen::VectorXd::Ones(n);
   EXPECT_THROW(factor.solve(x, workspace, progress), Cancelled);
 }
@@ -231,4 +273,4 @@ TEST(DenseCholesky, LongWorkEndsWhenTheObserverDoes) {
 }
 
 }  // namespace
-}  // namespace signorini::cholesky_test
+}  // namespace signorini::factor_test

@@ -1,13 +1,13 @@
-#include "system/cholesky.hpp"
+#include "system/multifrontal.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <new>
 
 #include <cblas.h>
 
+#include "system/dissection.hpp"
 #include "system/elimination_in_blocks.hpp"
 #include "system/pace.hpp"
 
@@ -17,18 +17,10 @@ namespace {
 /// Fronts up to this size are factored without BLAS.
 constexpr int kSmall = 24;
 
-std::unique_ptr<double[]> allocate(std::size_t size) {
-  try {
-    return std::unique_ptr<double[]>(new double[size]);
-  } catch (const std::bad_alloc&) {
-    throw OutOfMemory();
-  }
-}
-
 /// Square matrices that are taken and released last in, first out.
 class Stack {
  public:
-  explicit Stack(std::size_t capacity) : values_(allocate(capacity)) {}
+  explicit Stack(std::size_t capacity) : values_(allocate_numbers(capacity)) {}
 
   double* push(std::size_t size) {
     double* top = values_.get() + used_;
@@ -39,35 +31,31 @@ class Stack {
   double* top() { return values_.get() + used_; }
 
  private:
-  std::unique_ptr<double[]> values_;
+  Numbers values_;
   std::size_t used_ = 0;
 };
 
-}  // namespace
-
-NotPositiveDefinite::NotPositiveDefinite() : std::runtime_error("the matrix is not positive definite") {}
-OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisation") {}
-
-/// The numerical part. What a piece leaves is a square matrix of its front's rest, kept until the piece
-/// around it has taken it in. A piece's own is made while those of its halves still stand, so pieces of odd
-/// and of even depth use two stacks, and each is last in, first out.
-class Cholesky::Factorisation {
+/// The numerical part, which fills the panels. What a piece leaves is a square matrix of its front's rest,
+/// kept until the piece around it has taken it in. A piece's own is made while those of its halves still
+/// stand, so pieces of odd and of even depth use two stacks, and each is last in, first out.
+class FrontElimination {
  public:
-  Factorisation(Cholesky& own, const ElementSum& matrix, Progress& progress)
-      : own_(own),
+  FrontElimination(const Dissection& order, double* panels, const ElementSum& matrix, Progress& progress)
+      : order_(order),
+        next_panel_(panels),
         matrix_(matrix),
         progress_(progress),
         pace_(progress),
         position_(matrix.size),
         stacks_(make_stacks()),
         diagonal_(matrix.size) {
-    own_.order_.for_each_piece([this](int piece) { eliminate(piece); });
+    order_.for_each_piece([this](int piece) { eliminate(piece); });
   }
 
   /// What the whole leaves, in the order of the trailing unknowns.
   Eigen::MatrixXd complement() {
     constexpr int whole = 1;
-    const Dissection::Front front = own_.order_.front(whole);
+    const Dissection::Front front = order_.front(whole);
     const int n = front.rest();
     stack(whole).pop(rest_size(front));
     const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
@@ -89,34 +77,35 @@ class Cholesky::Factorisation {
 
   std::array<Stack, 2> make_stacks() const {
     std::array<std::size_t, 2> used{}, most{};
-    own_.order_.for_each_piece([&](int piece) {
+    order_.for_each_piece([&](int piece) {
       const int own = depth_parity(piece);
-      used[own] += rest_size(own_.order_.front(piece));
+      used[own] += rest_size(order_.front(piece));
       most[own] = std::max(most[own], used[own]);
-      if (own_.order_.is_leaf(piece)) return;
-      for (const int half : {2 * piece, 2 * piece + 1}) used[1 - own] -= rest_size(own_.order_.front(half));
+      if (order_.is_leaf(piece)) return;
+      for (const int half : {2 * piece, 2 * piece + 1}) used[1 - own] -= rest_size(order_.front(half));
     });
     return {Stack(most[0]), Stack(most[1])};
   }
 
   void eliminate(int piece) {
     progress_.check();
-    const Dissection::Front front = own_.order_.front(piece);
-    const Target target{own_.panel(piece), stack(piece).push(rest_size(front)), front.size(), front.pivots};
+    const Dissection::Front front = order_.front(piece);
+    const Target target{next_panel_, stack(piece).push(rest_size(front)), front.size(), front.pivots};
     for (int k = 0; k < front.size(); ++k) {
       pace_.add(static_cast<std::size_t>(front.size() - k));
       std::fill_n(target[k] + k, front.size() - k, 0.);
     }
     for (int k = 0; k < front.size(); ++k) position_[front.unknowns[k]] = k;
-    if (own_.order_.is_leaf(piece)) {
-      for (const int element : own_.order_.elements(piece)) add_element(element, target);
+    if (order_.is_leaf(piece)) {
+      for (const int element : order_.elements(piece)) add_element(element, target);
     } else {
       // The second half lies on top of the stack.
       add_half(2 * piece + 1, target);
       add_half(2 * piece, target);
     }
     factor(target);
-    check_pivots(front, target);
+    require_stiffness(front.unknowns, front.pivots, target.columns, diagonal_);
+    next_panel_ += static_cast<std::ptrdiff_t>(front.size()) * front.pivots;
   }
 
   /// A front while it is assembled and factored; of its symmetric matrix the lower triangle is kept, the
@@ -152,7 +141,7 @@ class Cholesky::Factorisation {
   }
 
   void add_half(int half, const Target& target) {
-    const Dissection::Front front = own_.order_.front(half);
+    const Dissection::Front front = order_.front(half);
     const std::span<const int> unknowns = front.remaining();
     const int n = front.rest();
     stack(half).pop(rest_size(front));
@@ -192,17 +181,8 @@ class Cholesky::Factorisation {
     }
   }
 
-  /// A pivot of which the elimination leaves less than double precision holds is rounding, not stiffness. It
-  /// is compared with its own diagonal entry, so that the units of the unknowns do not matter.
-  void check_pivots(const Dissection::Front& front, const Target& target) const {
-    constexpr double rounding = 1e-13;
-    for (int k = 0; k < front.pivots; ++k) {
-      const double pivot = target[k][k];
-      if (!(pivot * pivot >= rounding * diagonal_[front.unknowns[k]])) throw NotPositiveDefinite();
-    }
-  }
-
-  Cholesky& own_;
+  const Dissection& order_;
+  double* next_panel_;
   const ElementSum& matrix_;
   Progress& progress_;
   Pace pace_;
@@ -212,83 +192,25 @@ class Cholesky::Factorisation {
   std::vector<double> diagonal_;  ///< of the matrix, as far as it is assembled
 };
 
-Cholesky::Cholesky(const ElementSum& matrix, int trailing, Progress& progress)
-    : trailing_(trailing), order_(matrix, trailing, progress), panel_begin_(order_.pieces()) {
+}  // namespace
+
+Factor multifrontal(const ElementSum& matrix, int trailing, Progress& progress) {
+  Dissection order(matrix, trailing, progress);
+  Panels panels;
   int pivots = 0;
-  order_.for_each_piece([&](int piece) {
-    const Dissection::Front front = order_.front(piece);
-    panel_begin_[piece] = count_;
-    count_ += static_cast<std::size_t>(front.size()) * front.pivots;
+  order.for_each_piece([&](int piece) {
+    const Dissection::Front front = order.front(piece);
     pivots += front.pivots;
-    largest_front_ = std::max(largest_front_, front.size());
+    if (front.pivots == 0) return;
+    panels.all.push_back({order.first_unknown(piece), panels.count, front.size(), front.pivots});
+    panels.count += static_cast<std::size_t>(front.size()) * front.pivots;
   });
-  const bool rows_of_zeros = pivots != matrix.size - trailing || order_.front(1).rest() != trailing;
+  const bool rows_of_zeros = pivots != matrix.size - trailing || order.front(1).rest() != trailing;
   if (rows_of_zeros) throw NotPositiveDefinite();
-  values_ = allocate(count_);
-  Factorisation factorisation(*this, matrix, progress);
-  complement_ = factorisation.complement();
-}
-
-void Cholesky::forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
-  workspace.front.resize(largest_front_);
-  double* local = workspace.front.data();
-  Pace pace(progress);
-  order_.for_each_piece([&](int piece) {
-    const Dissection::Front front = order_.front(piece);
-    const int m = front.size(), p = front.pivots;
-    if (p == 0) return;
-    pace.add(static_cast<std::size_t>(m) * p);
-    for (int k = 0; k < p; ++k) local[k] = x[front.unknowns[k]];
-    const double* columns = panel(piece);
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, local, 1);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, m - p, p, 1, columns + p, m, local, 1, 0, local + p, 1);
-    for (int k = 0; k < p; ++k) x[front.unknowns[k]] = local[k];
-    for (int k = p; k < m; ++k) x[front.unknowns[k]] -= local[k];
-  });
-}
-
-void Cholesky::backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
-  workspace.front.resize(largest_front_);
-  double* local = workspace.front.data();
-  Pace pace(progress);
-  order_.for_each_piece_outside_in([&](int piece) {
-    const Dissection::Front front = order_.front(piece);
-    const int m = front.size(), p = front.pivots;
-    if (p == 0) return;
-    pace.add(static_cast<std::size_t>(m) * p);
-    for (int k = 0; k < m; ++k) local[k] = x[front.unknowns[k]];
-    const double* columns = panel(piece);
-    cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, local + p, 1, 1, local, 1);
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, p, columns, m, local, 1);
-    for (int k = 0; k < p; ++k) x[front.unknowns[k]] = local[k];
-  });
-}
-
-Cholesky::Condensed Cholesky::condense(const Eigen::VectorXd& b, Workspace& workspace,
-                                       Progress& progress) const {
-  Condensed condensed{b, {}};
-  forward(condensed.forward, workspace, progress);
-  condensed.trailing = condensed.forward.tail(trailing_);
-  return condensed;
-}
-
-Eigen::VectorXd Cholesky::expand(const Condensed& b, const Eigen::VectorXd& trailing, Workspace& workspace,
-                                 Progress& progress) const {
-  Eigen::VectorXd x = b.forward;
-  x.tail(trailing_) = trailing;
-  backward(x, workspace, progress);
-  return x;
-}
-
-void Cholesky::solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
-  forward(x, workspace, progress);
-  backward(x, workspace, progress);
-}
-
-std::size_t Cholesky::bytes() const {
-  const std::size_t numbers = count_ + static_cast<std::size_t>(complement_.size());
-  return sizeof(Cholesky) + numbers * sizeof(double) + panel_begin_.size() * sizeof(std::size_t) +
-         order_.bytes();
+  panels.values = allocate_numbers(panels.count);
+  Eigen::MatrixXd complement = FrontElimination(order, panels.values.get(), matrix, progress).complement();
+  panels.unknowns = order.take_unknowns();
+  return {std::move(panels), std::move(complement)};
 }
 
 }  // namespace signorini

@@ -1,0 +1,98 @@
+#include "system/factor.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <ranges>
+
+#include <cblas.h>
+
+#include "system/pace.hpp"
+
+namespace signorini {
+
+NotPositiveDefinite::NotPositiveDefinite() : std::runtime_error("the matrix is not positive definite") {}
+OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisation") {}
+
+Numbers allocate_numbers(std::size_t count) {
+  if (count > std::numeric_limits<std::size_t>::max() / sizeof(double)) throw OutOfMemory();
+  // At least one, for malloc() may answer null if nothing is asked for.
+  void* const memory = std::malloc(std::max<std::size_t>(count, 1) * sizeof(double));
+  if (memory == nullptr) throw OutOfMemory();
+  return Numbers(static_cast<double*>(memory));
+}
+
+void require_stiffness(std::span<const int> unknowns, int pivots, const double* columns,
+                       const std::vector<double>& diagonal) {
+  constexpr double rounding = 1e-13;
+  const std::size_t next = unknowns.size() + 1;
+  for (int k = 0; k < pivots; ++k) {
+    const double pivot = columns[static_cast<std::size_t>(k) * next];
+    if (!(pivot * pivot >= rounding * diagonal[unknowns[k]])) throw NotPositiveDefinite();
+  }
+}
+
+Factor::Factor(Panels panels, Eigen::MatrixXd complement)
+    : panels_(std::move(panels)), complement_(std::move(complement)) {
+  for (const Panels::Panel& panel : panels_.all) largest_ = std::max(largest_, panel.size);
+}
+
+void Factor::forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
+  workspace.front.resize(largest_);
+  double* local = workspace.front.data();
+  Pace pace(progress);
+  for (const Panels::Panel& panel : panels_.all) {
+    const auto unknowns = panels_.unknowns_of(panel);
+    const int m = panel.size, p = panel.pivots;
+    pace.add(static_cast<std::size_t>(m) * p);
+    for (int k = 0; k < p; ++k) local[k] = x[unknowns[k]];
+    const double* columns = panels_.columns(panel);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, local, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m - p, p, 1, columns + p, m, local, 1, 0, local + p, 1);
+    for (int k = 0; k < p; ++k) x[unknowns[k]] = local[k];
+    for (int k = p; k < m; ++k) x[unknowns[k]] -= local[k];
+  }
+}
+
+void Factor::backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
+  workspace.front.resize(largest_);
+  double* local = workspace.front.data();
+  Pace pace(progress);
+  for (const Panels::Panel& panel : panels_.all | std::views::reverse) {
+    const auto unknowns = panels_.unknowns_of(panel);
+    const int m = panel.size, p = panel.pivots;
+    pace.add(static_cast<std::size_t>(m) * p);
+    for (int k = 0; k < m; ++k) local[k] = x[unknowns[k]];
+    const double* columns = panels_.columns(panel);
+    cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, local + p, 1, 1, local, 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, p, columns, m, local, 1);
+    for (int k = 0; k < p; ++k) x[unknowns[k]] = local[k];
+  }
+}
+
+Factor::Condensed Factor::condense(const Eigen::VectorXd& b, Workspace& workspace, Progress& progress) const {
+  Condensed condensed{b, {}};
+  forward(condensed.forward, workspace, progress);
+  condensed.trailing = condensed.forward.tail(complement_.rows());
+  return condensed;
+}
+
+Eigen::VectorXd Factor::expand(const Condensed& b, const Eigen::VectorXd& trailing, Workspace& workspace,
+                               Progress& progress) const {
+  Eigen::VectorXd x = b.forward;
+  x.tail(complement_.rows()) = trailing;
+  backward(x, workspace, progress);
+  return x;
+}
+
+void Factor::solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const {
+  forward(x, workspace, progress);
+  backward(x, workspace, progress);
+}
+
+std::size_t Factor::bytes() const {
+  const std::size_t numbers = panels_.count + static_cast<std::size_t>(complement_.size());
+  return sizeof(Factor) + numbers * sizeof(double) + panels_.all.capacity() * sizeof(Panels::Panel) +
+         panels_.unknowns.capacity() * sizeof(int);
+}
+
+}  // namespace signorini
