@@ -67,9 +67,9 @@ bool Connection::is_gone() const {
   return poll_until(socket_, 0, Clock::now());
 }
 
-Receipt Connection::receive() {
-  std::array<char, 16 * 1024> bytes;
-  const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+Receipt Connection::receive(std::size_t most) {
+  std::array<char, kReceived> bytes;
+  const ssize_t count = ::recv(socket_, bytes.data(), std::min(most, bytes.size()), MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return Receipt::nothing;
   if (count <= 0) return Receipt::closed;
   if (!ended_) reader_.take({bytes.data(), static_cast<std::size_t>(count)});

@@ -50,8 +50,8 @@ class Connection {
 
   void keep_place(std::shared_ptr<void> place) { place_ = std::move(place); }
 
-  /// Takes what has come, some 16 KiB at most, without waiting, and gives it to the reader.
-  Receipt receive();
+  /// Takes what has come, so many bytes at most, without waiting, and gives it to the reader.
+  Receipt receive(std::size_t most = kReceived);
 
   /// A reply that is sent without waiting, by deliver().
   void put(std::string reply);
@@ -77,6 +77,8 @@ class Connection {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  static constexpr std::size_t kReceived = 16 * 1024;
 
   bool stopping() const;
   bool wait_writable();

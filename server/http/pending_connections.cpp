@@ -18,6 +18,10 @@ namespace {
 
 constexpr int look_at_guests_ms = 250;  // how late somebody is sent away
 
+/// How many bodies are read before heads are looked for again, and how much is read of a head at once, with
+/// which some of its body may come: the chunks of 16 KiB may take half a millisecond.
+constexpr std::size_t bodies_at_once = 8, bytes_of_head = 1024;
+
 constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
 
 }  // namespace
@@ -26,18 +30,22 @@ PendingConnections::PendingConnections(const PendingLimits& limits, Refuses refu
     : limits_(limits),
       refuses_(std::move(refuses)),
       serve_(std::move(serve)),
-      epoll_(epoll_create1(EPOLL_CLOEXEC)),
+      heads_(epoll_create1(EPOLL_CLOEXEC)),
+      bodies_(epoll_create1(EPOLL_CLOEXEC)),
       wake_event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       open_(limits.connections),
       long_bodies_(limits.long_bodies, [this] { ::eventfd_write(wake_event_, 1); }) {
-  epoll_event wake{EPOLLIN, {.fd = wake_event_}};
-  epoll_ctl(epoll_, EPOLL_CTL_ADD, wake_event_, &wake);
+  for (const int other : {wake_event_, bodies_}) {
+    epoll_event readable{EPOLLIN, {.fd = other}};
+    epoll_ctl(heads_, EPOLL_CTL_ADD, other, &readable);
+  }
   thread_ = std::thread(&PendingConnections::run, this);
 }
 
 PendingConnections::~PendingConnections() {
   stop();
-  ::close(epoll_);
+  ::close(bodies_);
+  ::close(heads_);
   ::close(wake_event_);
 }
 
@@ -52,13 +60,13 @@ std::shared_ptr<void> PendingConnections::take_place() {
 
 void PendingConnections::admit(std::shared_ptr<Connection> connection) {
   const auto now = Clock::now();
-  enter({std::move(connection), Stay::receiving, now + limits_.idle});
+  enter({std::move(connection), Stay::receiving, now + limits_.idle, heads_});
 }
 
 void PendingConnections::linger(std::shared_ptr<Connection> connection) {
   connection->end_sending();
   const auto now = Clock::now();
-  enter({std::move(connection), Stay::lingering, now + limits_.linger});
+  enter({std::move(connection), Stay::lingering, now + limits_.linger, bodies_});
 }
 
 void PendingConnections::stop() {
@@ -80,24 +88,35 @@ void PendingConnections::run() {
   auto look_around = Clock::now();
   for (;;) {
     std::array<epoll_event, 64> events;
-    const int count = epoll_wait(epoll_, events.data(), events.size(), look_at_guests_ms);
-    // Who waits for the lock of a busy thread would find it taken again each time.
-    while (waiting_for_lock_ > 0) std::this_thread::yield();
-    const std::lock_guard lock(mutex_);
+    const int count = epoll_wait(heads_, events.data(), events.size(), look_at_guests_ms);
+    std::unique_lock lock(mutex_, std::defer_lock);
+    give_way(lock);
     if (stopping_) return;
+    bool bodies_come = false;
     for (int i = 0; i < count; ++i) {
+      if (waiting_for_lock_ > 0) give_way(lock);
       if (events[i].data.fd == wake_event_) {
         eventfd_t woken = 0;
         ::eventfd_read(wake_event_, &woken);
         let_in_long_bodies();
+      } else if (events[i].data.fd == bodies_) {
+        bodies_come = true;
       } else {
         hear(events[i].data.fd, events[i].events);
       }
     }
+    if (bodies_come) hear_bodies();
     if (Clock::now() < look_around) continue;
     dismiss_late();
     look_around = Clock::now() + std::chrono::milliseconds(look_at_guests_ms);
   }
+}
+
+/// Lets others go first: who waits for the lock of a busy thread would find it taken again each time.
+void PendingConnections::give_way(std::unique_lock<std::mutex>& lock) {
+  if (lock.owns_lock()) lock.unlock();
+  while (waiting_for_lock_ > 0) std::this_thread::yield();
+  lock.lock();
 }
 
 std::unique_lock<std::mutex> PendingConnections::lock_before_thread() {
@@ -114,7 +133,7 @@ void PendingConnections::enter(Entry entry) {
   const auto entered = entries_.emplace(socket, std::move(entry)).first;
   entered->second.in_line = line_.insert(line_.end(), socket);
   epoll_event readable{EPOLLIN, {.fd = socket}};
-  epoll_ctl(epoll_, EPOLL_CTL_ADD, socket, &readable);
+  epoll_ctl(entered->second.epoll, EPOLL_CTL_ADD, socket, &readable);
   // What came together with the request before.
   if (entered->second.stay == Stay::receiving) judge(entered);
 }
@@ -126,7 +145,7 @@ void PendingConnections::hear(int socket, std::uint32_t events) {
   Entry& entry = found->second;
   Receipt receipt = Receipt::nothing;
   if (entry.stay != Stay::waiting_for_room) {
-    receipt = entry.connection->receive();
+    receipt = entry.epoll == heads_ ? entry.connection->receive(bytes_of_head) : entry.connection->receive();
   } else if ((events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR)) != 0) {
     receipt = Receipt::closed;
   }
@@ -136,6 +155,22 @@ void PendingConnections::hear(int socket, std::uint32_t events) {
     judge(found);
   }
   if (bytes_ > limits_.bytes) dismiss_largest();
+}
+
+/// In turn. One of them at least, the others as long as nobody comes.
+void PendingConnections::hear_bodies() {
+  std::array<epoll_event, bodies_at_once> events;
+  const int count = epoll_wait(bodies_, events.data(), events.size(), 0);
+  for (int i = 0; i < count && (i == 0 || waiting_for_lock_ == 0); ++i)
+    hear(events[i].data.fd, events[i].events);
+}
+
+void PendingConnections::hear_behind_heads(Entry& entry) const {
+  if (entry.epoll == bodies_) return;
+  const int socket = entry.connection->socket();
+  epoll_event readable{EPOLLIN, {.fd = socket}};
+  epoll_ctl(std::exchange(entry.epoll, bodies_), EPOLL_CTL_DEL, socket, nullptr);
+  epoll_ctl(bodies_, EPOLL_CTL_ADD, socket, &readable);
 }
 
 /// Lets a client in whose request has come, and sees to it that the rest of the others does.
@@ -160,6 +195,7 @@ void PendingConnections::judge_body(Entries::iterator found) {
     reader.leave_body();
     return serve(found);
   }
+  hear_behind_heads(entry);
   count(entry);
   if (entry.stay == Stay::receiving_long_body) return;
   entry.deadline = *entry.begun + limits_.body_time;
@@ -248,7 +284,7 @@ void PendingConnections::count(Entry& entry) {
 void PendingConnections::listen_to(const Entry& entry) const {
   const int socket = entry.connection->socket();
   epoll_event event{entry.stay == Stay::waiting_for_room ? EPOLLRDHUP : EPOLLIN, {.fd = socket}};
-  epoll_ctl(epoll_, EPOLL_CTL_MOD, socket, &event);
+  epoll_ctl(entry.epoll, EPOLL_CTL_MOD, socket, &event);
 }
 
 void PendingConnections::dismiss_late() {
@@ -276,7 +312,7 @@ void PendingConnections::remove(Entries::iterator entry) {
   bytes_ -= entry->second.counted;
   if (entry->second.stay == Stay::waiting_for_room) --queued_;
   line_.erase(entry->second.in_line);
-  epoll_ctl(epoll_, EPOLL_CTL_DEL, entry->first, nullptr);
+  epoll_ctl(entry->second.epoll, EPOLL_CTL_DEL, entry->first, nullptr);
   entries_.erase(entry);
 }
 

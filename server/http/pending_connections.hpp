@@ -32,8 +32,9 @@ struct PendingLimits {
 };
 
 /// Where connections wait, without a thread each, until a whole request has come: slow and silent clients
-/// cost some bytes and a descriptor. Long bodies come as long as there is room for them; the others wait in
-/// their sockets.
+/// cost some bytes and a descriptor. Bodies are read behind the heads that have come, a few at a time, so
+/// that who asks for something short does not wait for them. Long bodies come as long as there is room for
+/// them; the others wait in their sockets.
 class PendingConnections {
  public:
   /// Takes a connection whose request has come, with the room that its body has if that is long.
@@ -71,6 +72,7 @@ class PendingConnections {
     std::shared_ptr<Connection> connection;
     Stay stay;
     Clock::time_point deadline;
+    int epoll;  ///< that hears of it
     std::list<int>::iterator in_line = {};
     std::optional<Clock::time_point> begun = {};  ///< when the first bytes of the request came
     bool head_judged = false;
@@ -81,10 +83,13 @@ class PendingConnections {
   using Entries = std::map<int, Entry>;  ///< by socket
 
   void run();
+  void give_way(std::unique_lock<std::mutex>& lock);
   /// For those who are not its own thread, which lets them go first.
   std::unique_lock<std::mutex> lock_before_thread();
   void enter(Entry entry);
   void hear(int socket, std::uint32_t events);
+  void hear_bodies();
+  void hear_behind_heads(Entry& entry) const;
   void judge(Entries::iterator entry);
   void judge_body(Entries::iterator entry);
   void serve(Entries::iterator entry);
@@ -101,7 +106,8 @@ class PendingConnections {
   const PendingLimits limits_;
   const Refuses refuses_;
   const Serve serve_;
-  const int epoll_;
+  const int heads_;   ///< the epoll of those whose head is coming, and of the other one
+  const int bodies_;  ///< that of all others
   const int wake_event_;
   Semaphore open_;
   Semaphore long_bodies_;  ///< one a byte
