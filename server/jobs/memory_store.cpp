@@ -48,7 +48,8 @@ Batch MemoryStore::add(NewBatch batch) {
 
 /// Throws QueueFull if no request more may wait, or not so many jobs of the owner.
 void MemoryStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) const {
-  if (requests_in_queue() >= limits_.queue) throw QueueFull(limits_.queue);
+  // There are no more requests than jobs, which are counted already.
+  if (queue_.size() >= limits_.queue && requests_in_queue() >= limits_.queue) throw QueueFull(limits_.queue);
   if (share.queue && queued(owner) + jobs > *share.queue) throw QueueFull(*share.queue, true);
 }
 

@@ -78,7 +78,7 @@ function program(gl, fragment) {
 const mostSmoothed = 100000; // triangles whose edges are smoothed: software draws four samples a pixel
 
 /// The numbers of some corners.
-function picked(numbers, size, corners) {
+function gathered(numbers, size, corners) {
   const own = new Float32Array(size * corners.length);
   corners.forEach((corner, i) => { for (let c = 0; c < size; ++c) own[size * i + c] = numbers[size * corner + c]; });
   return own;
@@ -100,7 +100,9 @@ export class Drawing {
     const { gl } = this;
     this.shown = program(gl, coloured);
     this.numbers = program(gl, numbered);
-    [this.whole, this.rough] = [null, this.coarse].map((coarse, i) => (i && !coarse ? null : { array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()), coarse }));
+    const arrays = (coarse) => ({ coarse, array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()) });
+    this.whole = arrays(null);
+    this.rough = this.coarse && arrays(this.coarse);
     this.texture = gl.createTexture();
     this.target = null;
     gl.enable(gl.DEPTH_TEST);
@@ -112,7 +114,7 @@ export class Drawing {
     for (const { array, buffers, coarse } of [this.whole, this.rough].filter(Boolean)) {
       gl.bindVertexArray(array);
       gl.bindBuffer(gl.ARRAY_BUFFER, buffers[location]);
-      gl.bufferData(gl.ARRAY_BUFFER, coarse ? picked(numbers, size, coarse[of]) : numbers, gl.STATIC_DRAW);
+      gl.bufferData(gl.ARRAY_BUFFER, coarse ? gathered(numbers, size, coarse[of]) : numbers, gl.STATIC_DRAW);
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
     }

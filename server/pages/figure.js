@@ -95,7 +95,7 @@ export class Figure {
       const middle = this.least / 2 + this.most / 2, half = this.most / 2 - this.least / 2 || 1;
       this.normal = (value) => (value - middle) / half;
       const normal = new Float32Array(all.length);
-      for (let i = 0; i < all.length; ++i) normal[i] = (all[i] - middle) / half;
+      for (let i = 0; i < all.length; ++i) normal[i] = this.normal(all[i]);
       this.drawing?.setValues(normal);
       drawn.values = key;
     }

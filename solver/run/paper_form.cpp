@@ -11,17 +11,17 @@
 namespace signorini {
 namespace {
 
-Solution iterate(const Problem& posed, const Mesh& mesh, const Settings& settings, Progress& progress) {
-  const Discretization problem(posed, mesh, &progress);
-  held_by_contact_alone(problem);
+Solution iterate(const Problem& problem, const Mesh& mesh, const Settings& settings, Progress& progress) {
+  const Discretization discrete(problem, mesh, &progress);
+  held_by_contact_alone(discrete);
   progress.enter(Phase::assemble);
-  UzawaIteration iteration(problem, std::get<PaperUzawa>(settings.method), settings.factorization, progress);
+  UzawaIteration iteration(discrete, std::get<PaperUzawa>(settings.method), settings.factorization, progress);
   progress.enter(Phase::iterate);
   const Outcome outcome = iteration.run(progress);
   progress.found();
   Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
                 outcome};
-  return describe(problem, fields, settings, progress);
+  return describe(discrete, fields, settings, progress);
 }
 
 /// The certificate of the discrete solution, moved to the iterate.

@@ -119,7 +119,10 @@ Sparse put_together(const ElementSum& sum, const std::vector<double>& added, Com
       }
   }
   int trailing = sum.size - static_cast<int>(added.size());
-  for (const double entry : added) add(trailing, trailing, entry), ++trailing;
+  for (const double entry : added) {
+    add(trailing, trailing, entry);
+    ++trailing;
+  }
   progress.check();
   return owned<Sparse>(cholmod_l_triplet_to_sparse(triplets.get(), 0, common.get()), common);
 }

@@ -376,7 +376,7 @@ TEST(SolveCommand, DrawsAPicture) {
   EXPECT_TRUE(process.standard_output().ends_with("</svg>\n"));
 }
 
-/// The summary of a result, and how many times its memory is that of the other.
+/// The same energy, and more memory than the other took.
 void expect_other_factor(const json& summary, const json& other) {
   const double energy = other.at("energy");
   EXPECT_NEAR(summary.at("energy").get<double>(), energy, 1e-10 * std::abs(energy));

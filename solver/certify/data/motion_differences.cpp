@@ -155,9 +155,10 @@ class Motions {
 
   /// A number that no quotient is below, and hardly above which the least is; 0 if doubles do not tell.
   double least_quotient(Progress& progress) const {
-    if (fills_in(progress)) return 0;
+    const ElementSum differences = quotient(0);
+    if (fills_in(differences, progress)) return 0;
     try {
-      double known = kBelow * foreseen(progress);
+      double known = kBelow * foreseen(differences, progress);
       for (int tries = 0; tries < kMostTries && std::isfinite(known); ++tries, known /= 2)
         if (is_below_all(known, progress)) return known;
     } catch (const NotPositiveDefinite&) {
@@ -168,10 +169,10 @@ class Motions {
 
   /// Whether a factor would be several times that of ordinary triangles, as it is of slivers: more than the
   /// solve is foreseen to have for it (run/memory_estimate.cpp).
-  bool fills_in(Progress& progress) const {
+  bool fills_in(const ElementSum& differences, Progress& progress) const {
     const double n = discrete_.triangles(), ordinary = 1.5 * n * std::log2(n + 2), most = 3 * ordinary;
     double numbers = 0;
-    const Dissection order(quotient(0), 0, progress);
+    const Dissection order(differences, 0, progress);
     order.for_each_piece([&](int piece) {
       const Dissection::Front front = order.front(piece);
       numbers += static_cast<double>(front.pivots) * front.size();
@@ -189,11 +190,11 @@ class Motions {
   }
 
   /// By the inverse iteration.
-  double foreseen(Progress& progress) const {
+  double foreseen(const ElementSum& differences, Progress& progress) const {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(size());
     for (int t = 0; t < discrete_.triangles(); ++t)
       if (first(t) >= 0) squares.segment<kOwn>(first(t)) = force_on(t) * largest_square();
-    const Factor factor = multifrontal(quotient(0), 0, progress);
+    const Factor factor = multifrontal(differences, 0, progress);
     Factor::Workspace workspace;
     std::mt19937 engine(1);
     Eigen::VectorXd motion(size());
