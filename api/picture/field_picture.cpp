@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "api/picture/colour_map.hpp"
 #include "api/picture/svg.hpp"
@@ -104,10 +106,11 @@ struct Corner {
   Point place;
   double value;
 };
+using Corners = std::vector<Corner>;
 
 /// The part of a convex polygon where sign · (value − level) ≥ 0.
-std::vector<Corner> part_beyond(const std::vector<Corner>& polygon, double level, double sign) {
-  std::vector<Corner> part;
+Corners part_beyond(const Corners& polygon, double level, double sign) {
+  Corners part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Corner &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
     const double da = sign * (a.value - level), db = sign * (b.value - level);
@@ -120,53 +123,79 @@ std::vector<Corner> part_beyond(const std::vector<Corner>& polygon, double level
   return part;
 }
 
-std::vector<Point> places_of(const std::vector<Corner>& polygon) {
+std::vector<Point> places_of(const Corners& polygon) {
   std::vector<Point> places;
   for (const Corner& corner : polygon) places.push_back(corner.place);
   return places;
 }
 
-/// Shapes of the same colour that follow each other are one element.
-class Brush {
- public:
-  explicit Brush(Svg& svg) : svg_(svg) {}
+Corners corners_of(const Mesh& mesh, const Colouring& by, const std::vector<Point>& places, int t) {
+  Corners triangle;
+  for (int k = 0; k < 3; ++k) triangle.push_back({places[mesh.triangles[t][k]], by.value(t, k)});
+  return triangle;
+}
 
-  void fill(const std::vector<Point>& shape, int band) {
-    if (shape.size() < 3) return;
-    if (band != band_) {
-      lift();
-      svg_.begin_path("f c" + std::to_string(band));
-      band_ = band;
-    }
-    svg_.shape(shape, true);
-  }
-
-  void lift() {
-    if (band_ >= 0) svg_.end_path();
-    band_ = -1;
-  }
-
- private:
-  Svg& svg_;
-  int band_ = -1;
+/// The bands of colour that a triangle is in.
+struct Bands {
+  std::uint8_t first, last;
 };
 
+std::vector<Bands> bands_of(const Mesh& mesh, const Colouring& by, const ColourMap& colours) {
+  std::vector<Bands> bands;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const auto [least, most] = std::minmax({by.value(t, 0), by.value(t, 1), by.value(t, 2)});
+    const auto first = static_cast<std::uint8_t>(colours.band(least));
+    bands.push_back({first, by.is_linear ? static_cast<std::uint8_t>(colours.band(most)) : first});
+  }
+  return bands;
+}
+
+/// What is of one band is one element: the names of its pieces would be a third of the picture.
 void fill_triangles(Svg& svg, const Mesh& mesh, const Colouring& by, const ColourMap& colours,
                     const std::vector<Point>& places) {
-  Brush brush(svg);
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    std::vector<Corner> triangle;
-    for (int k = 0; k < 3; ++k) triangle.push_back({places[mesh.triangles[t][k]], by.value(t, k)});
-    const auto [least, most] = std::ranges::minmax(triangle, {}, &Corner::value);
-    const int first = colours.band(least.value), last = by.is_linear ? colours.band(most.value) : first;
-    for (int band = first; band <= last; ++band) {
-      std::vector<Corner> part = triangle;
+  const std::vector<Bands> bands = bands_of(mesh, by, colours);
+  for (int band = 0; band < ColourMap::kBands; ++band) {
+    bool has_begun = false;
+    for (int t = 0; t < static_cast<int>(bands.size()); ++t) {
+      const auto [first, last] = bands[t];
+      if (band < first || band > last) continue;
+      Corners part = corners_of(mesh, by, places, t);
       if (band > first) part = part_beyond(part, colours.start_of(band), 1);
       if (band < last) part = part_beyond(part, colours.start_of(band + 1), -1);
-      brush.fill(places_of(part), band);
+      if (part.size() < 3) continue;
+      if (!has_begun) svg.begin_path("f c" + std::to_string(band));
+      has_begun = true;
+      svg.shape(places_of(part), true);
     }
+    if (has_begun) svg.end_path();
   }
-  brush.lift();
+}
+
+/// Lines that together follow each edge once, by their points: as long as there is a next edge, since a
+/// line's first point takes as many digits as three more edges.
+std::vector<std::vector<int>> lines_along(const Mesh& mesh) {
+  std::vector<std::vector<std::size_t>> left(mesh.points.size());
+  for (std::size_t edge = 0; edge < mesh.edges.size(); ++edge)
+    for (const int point : mesh.edges[edge]) left[point].push_back(edge);
+  std::vector<bool> is_drawn(mesh.edges.size());
+  const auto step_from = [&](int point) -> std::optional<int> {
+    while (!left[point].empty()) {
+      const std::size_t edge = left[point].back();
+      left[point].pop_back();
+      if (is_drawn[edge]) continue;
+      is_drawn[edge] = true;
+      const auto [a, b] = mesh.edges[edge];
+      return a == point ? b : a;
+    }
+    return std::nullopt;
+  };
+  std::vector<std::vector<int>> lines;
+  for (int start = 0; start < static_cast<int>(left.size()); ++start)
+    while (std::optional<int> next = step_from(start)) {
+      std::vector<int>& line = lines.emplace_back(1, start);
+      for (; next; next = step_from(*next)) line.push_back(*next);
+    }
+  return lines;
 }
 
 /// Where the edges are too close to each other to be told apart they would only darken the picture.
@@ -176,7 +205,11 @@ void draw_edges(Svg& svg, const Mesh& mesh, const View& view, const std::vector<
   const double pixels = view.scale() * std::sqrt(mesh.area() / static_cast<double>(mesh.triangles.size()));
   if (pixels >= closest) {
     svg.begin_path("mesh");
-    for (const auto& [a, b] : mesh.edges) svg.shape(std::array{places[a], places[b]}, false);
+    for (const std::vector<int>& line : lines_along(mesh)) {
+      std::vector<Point> shape;
+      for (const int point : line) shape.push_back(places[point]);
+      svg.shape(shape, false);
+    }
     svg.end_path();
   }
   svg.begin_path("rim");

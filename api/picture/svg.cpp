@@ -3,13 +3,18 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace signorini::api {
 namespace {
 
 /// A hundredth of a pixel is not seen.
 double rounded(double length) {
-  return std::round(100 * length) / 100;
+  return std::round(100 * length) / 100 + 0.;  // no -0
+}
+
+Point rounded(const Point& point) {
+  return {rounded(point.x()), rounded(point.y())};
 }
 
 }  // namespace
@@ -73,11 +78,17 @@ void Svg::begin_path(std::string_view style) {
 }
 
 void Svg::shape(std::span<const Point> points, bool closed) {
-  char command = 'M';
-  for (const Point& point : points) {
-    out_.put(command);
-    put(point);
-    command = 'L';
+  Point last = rounded(points.front());
+  out_.put('M');
+  put(last);
+  out_.put('l');
+  bool is_first = true;
+  for (const Point& point : points.subspan(1)) {
+    const Point next = rounded(point);
+    const Vector step = rounded(Point(next - last));
+    if (!std::exchange(is_first, false) && step.x() >= 0) out_.put(' ');
+    put(step);
+    last = next;
   }
   if (closed) out_.put('z');
 }
@@ -87,9 +98,9 @@ void Svg::end_path() {
 }
 
 void Svg::put(const Point& point) {
-  out_.put_digits(rounded(point.x()));
-  out_.put(' ');
-  out_.put_digits(rounded(point.y()));
+  out_.put_digits(point.x());
+  if (point.y() >= 0) out_.put(' ');
+  out_.put_digits(point.y());
 }
 
 void Svg::put(std::string_view name, double length) {

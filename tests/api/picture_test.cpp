@@ -39,16 +39,29 @@ std::string drawn(const Solution& solution, const Picture& picture = {}) {
   return text;
 }
 
+/// The corners of the shapes in a path, which are written as steps.
+std::vector<std::vector<Point>> shapes_of(const std::string& path) {
+  std::vector<std::vector<Point>> all;
+  const std::regex number("-?[0-9.]+");
+  Point corner(0, 0);
+  std::istringstream shapes(path);
+  for (std::string shape; std::getline(shapes, shape, 'M');) {
+    corner.setZero();
+    std::vector<Point>& corners = all.emplace_back();
+    for (std::sregex_iterator c(shape.begin(), shape.end(), number), end; c != end; ++c) {
+      const double x = std::stod(c->str());
+      corners.push_back(corner += Vector(x, std::stod((++c)->str())));
+    }
+  }
+  return all;
+}
+
 /// The area that each band of colour has on the body, in pixels, from the shapes of the paths.
 std::map<int, double> areas(const std::string& svg) {
   std::map<int, double> all;
-  const std::regex path("<path class=\"f c([0-9]+)\" d=\"([^\"]*)\""), point("([ML])([-0-9.]+) ([-0-9.]+)");
-  for (std::sregex_iterator p(svg.begin(), svg.end(), path), end; p != end; ++p) {
-    std::istringstream shapes((*p)[2].str());
-    for (std::string shape; std::getline(shapes, shape, 'z');) {
-      std::vector<Point> corners;
-      for (std::sregex_iterator c(shape.begin(), shape.end(), point); c != end; ++c)
-        corners.emplace_back(std::stod((*c)[2]), std::stod((*c)[3]));
+  const std::regex path("<path class=\"f c([0-9]+)\" d=\"([^\"]*)\"");
+  for (std::sregex_iterator p(svg.begin(), svg.end(), path), end; p != end; ++p)
+    for (const std::vector<Point>& corners : shapes_of((*p)[2])) {
       double area = 0;
       for (std::size_t i = 0; i < corners.size(); ++i) {
         const Point &a = corners[i], &b = corners[(i + 1) % corners.size()];
@@ -56,7 +69,6 @@ std::map<int, double> areas(const std::string& svg) {
       }
       all[std::stoi((*p)[1])] += std::abs(area);
     }
-  }
   return all;
 }
 
@@ -86,6 +98,17 @@ TEST(Picture, KeepsJumps) {
   const std::map<int, double> bands = areas(drawn(two_triangles(2, jump)));
   ASSERT_EQ(bands.size(), 2u);
   EXPECT_NEAR(bands.begin()->second, area_of_picture / 2, 1);
+}
+
+/// The rectangle of 2 × 1 has five edges, its diagonal among them.
+TEST(Picture, FollowsEachEdgeOnce) {
+  const std::string svg = drawn(two_triangles(1, Eigen::RowVector2d(1, 3)));
+  std::smatch mesh;
+  ASSERT_TRUE(std::regex_search(svg, mesh, std::regex("<path class=\"mesh\" d=\"([^\"]*)\"")));
+  double length = 0;
+  for (const std::vector<Point>& line : shapes_of(mesh[1]))
+    for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  EXPECT_NEAR(length, 290 * (2 + 1 + 2 + 1 + std::sqrt(5)), 0.1);
 }
 
 TEST(Picture, HasNoColourForSignsThatAreNotThere) {
