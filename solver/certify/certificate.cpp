@@ -132,16 +132,13 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
     progress.check();
     totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, tractions), owners, progress);
   }
-  const CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches.forces);
-  totals.contact *= 1 + carried.change_of_pressure;
-  totals.second_counts = carried.change_of_pressure == 0;
+  CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
   const bool is_little = carried.norm <= kLittle * bound_from(totals).value;
-  totals.carried =
-      is_little || !carried.is_held
-          ? carried.norm
-          : std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
-  totals.carried += std::sqrt(of_patches.square);
+  if (carried.is_held && !is_little)
+    carried.norm =
+        std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
+  totals.add(carried);
   certificate.bound = bound_from(totals);
   certificate.squares = std::move(totals.shares);
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);

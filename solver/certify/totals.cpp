@@ -129,6 +129,12 @@ template void Totals::add<1>(const Discretization&, const LawOnMesh&, const Admi
 template void Totals::add<2>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, ElasticSums,
                              const Owners&, Progress&, const AdmissiblePair*);
 
+void Totals::add(const CarriedLoads& loads) {
+  contact *= 1 + loads.change_of_pressure;
+  second_counts = loads.change_of_pressure == 0;
+  carried = loads.norm + loads.norm_on_patches;
+}
+
 double least_over_the_way(double delta_square, double s_square, double s_delta, double radius, double known,
                           double slack) {
   double theta = known < 0 && s_square > 0 ? 1 : 0;

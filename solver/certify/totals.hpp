@@ -1,5 +1,6 @@
 #pragma once
 
+#include "certify/data/carried_loads.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
@@ -17,11 +18,14 @@ struct Totals {
   void add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
            const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr);
 
+  /// Adds what carries the uncertain loads, after all triangles.
+  void add(const CarriedLoads& loads);
+
   TriangleSums all;
   double contact = 0, oscillation_square = 0;
   double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)² over the triangles
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
-  double carried = 0;  ///< CarriedLoads::norm
+  double carried = 0;  ///< the norm of the stress that carries uncertain loads
   /// The second pair is one with the same uncertain loads: not if p* had to change for them.
   bool second_counts = true;
   Eigen::VectorXd shares;

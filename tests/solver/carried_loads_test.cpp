@@ -62,7 +62,7 @@ class Square {
   }
 
   CarriedLoads carry(const std::vector<double>& forces) const {
-    return carry_uncertain_loads(*discretization_, *laws_, *pressure, forces);
+    return carry_uncertain_loads(*discretization_, *laws_, *pressure, {0, forces});
   }
 
   double carry_by_motions(const UncertainLoads& loads) {
@@ -229,6 +229,14 @@ TEST(LoadsBroughtBack, HaveTheForceOfAllParts) {
     EXPECT_GT(forces[parent], 0);
     EXPECT_DOUBLE_EQ(back.forces[parent], forces[parent]);
   }
+  problem.body = VectorField(0);
+  const Mesh triangles = rectangle_mesh(Rectangle{}, {1, 1}, Pattern::right);
+  const Discretization whole(problem, triangles);
+  const CarriedLoads carried = carry_uncertain_loads(
+      whole, LawOnMesh(problem.material, triangles, 1e-6, progress), no_pressure(whole), back);
+  EXPECT_EQ(carried.loads.on_triangles, back.forces);
+  EXPECT_GT(carried.norm, 0);
+  EXPECT_EQ(carried.norm_on_patches, std::sqrt(back.square));
   // |J|² / det J = 2 of all parts, and the law is 1.
   EXPECT_GE(back.square, 2 * std::pow(norm_of_element(1), 2) * of_loads);
 }

@@ -124,5 +124,26 @@ TEST(JumpOscillation, IsABoundOnAnyTriangle) {
   }
 }
 
+/// Of what waves faster than the cells of a triangle are small, no more is known than between which values it
+/// lies: here it is always the jump.
+TEST(JumpOscillation, CountsWhatIsNotKnownOfTheLoad) {
+  const std::string one = "(cos(1000000*x)^2 + sin(1000000*x)^2 > 0.5 ? 1 : -1)";
+  const Field jump = problems::formula("(x < 2.3 ? 10 : -10) * " + one);
+  const auto expect_bound = [](const VectorField& load, auto components) {
+    constexpr int d = components;
+    Problem problem;
+    problem.body = load;
+    if (d == 2) problem.material = YoungPoisson{Field(1), Field(0.), Plane::strain};
+    const LoadProjection projection(problem, cut(half_square, 0));
+    const ProjectedLoad& projected = projection[0];
+    ASSERT_TRUE(projected.jumps);
+    CellBudget budget{1000};
+    EXPECT_GE(jump_oscillation<d>(load, projected, half_square, budget),
+              by_elements<d>(load, projected, half_square, 4));
+  };
+  expect_bound(jump, std::integral_constant<int, 1>());
+  expect_bound(VectorField(jump, jump), std::integral_constant<int, 2>());
+}
+
 }  // namespace
 }  // namespace signorini::jump_oscillation_test

@@ -325,5 +325,37 @@ TEST(Relaxation, MeasuresACurlByTheGradient) {
   EXPECT_NEAR(slope.dot(turned_compliance_of(law) * slope), curl.dot(law.compliance * curl), 1e-14);
 }
 
+/// What the rules miss of a law that waves: of the fields of a second pair, too, each twice.
+TEST(PatchPairs, AreOffByWhatTheRulesMissOfBothPairs) {
+  Problem problem = Exact::problem(Scheme::conforming, 8);
+  problem.material = MembraneStiffness::isotropic(problems::formula("1 + 0.3*sin(9*x)"));
+  CertificateFields whole(problem, std::make_shared<const Mesh>(rectangle_mesh(
+                                       std::get<Rectangle>(problem.domain), {16, 8}, Pattern::crossed)));
+  LawField<1> law(problem.material);
+  int seen = 0;
+  for (const auto& pairs : pairs_of(whole)) {
+    const OnPatch on(*pairs);
+    const Mesh& mesh = *pairs->patch().mesh;
+    const LawOnMesh laws(problem.material, mesh, 0.3, whole.progress());
+    for (int t = 0; t < pairs->discretization().triangles(); ++t) {
+      const TriangleSums one = MembraneSums(pairs->discretization(), pairs->stress(), pairs->first())(t, law,
+                                                                                                      laws),
+                         both = MembraneSums(*pairs)(t, law, laws);
+      const double error = one.slack / (2 * one.stress + 3 * one.correction + 2 * one.strain);
+      const AffineMap map(mesh.corners(t));
+      const double tau = map.determinant * integrate_from(0, [&](const Point& x) {
+                           const Vector own = on.tau(t, x);
+                           const auto compliance = law(map(x)).compliance;
+                           return own.dot(compliance * own);
+                         });
+      const double least =
+          error * (2 * both.stress + 3 * both.correction + 2 * both.strain + 2 * both.moved + 2 * tau);
+      EXPECT_GE(both.slack, least * (1 - 1e-3));
+      seen += error > 0 && both.moved + tau > 1e-2 * both.stress;
+    }
+  }
+  EXPECT_GT(seen, 10);
+}
+
 }  // namespace
 }  // namespace signorini::patch_pairs_test

@@ -150,5 +150,19 @@ TEST(Totals, CountTheLargestGapThatIsPossible) {
   EXPECT_GE(made.totals.contact, contact);
 }
 
+/// What the pressure has to take of uncertain loads makes the contact term larger, and no second pair has it.
+TEST(Totals, HaveWhatCarriesUncertainLoads) {
+  Totals held(0), taken(0);
+  held.contact = taken.contact = 2;
+  held.add(CarriedLoads{.norm = 3, .loads = UncertainLoads({}), .norm_on_patches = 0.5});
+  EXPECT_EQ(held.contact, 2);
+  EXPECT_EQ(held.carried, 3.5);
+  EXPECT_TRUE(held.second_counts);
+  taken.add(CarriedLoads{.norm = 3, .change_of_pressure = 0.25, .loads = UncertainLoads({})});
+  EXPECT_EQ(taken.contact, 2.5);
+  EXPECT_EQ(taken.carried, 3);
+  EXPECT_FALSE(taken.second_counts);
+}
+
 }  // namespace
 }  // namespace signorini::totals_test

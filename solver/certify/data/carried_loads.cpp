@@ -67,14 +67,15 @@ class Carrier {
         squares_of_loads_(Eigen::VectorXd::Zero(discrete.triangles())),
         on_edges_(Eigen::Matrix3Xd::Zero(3, discrete.triangles())) {}
 
-  CarriedLoads run(const std::vector<double>& forces) {
+  CarriedLoads run(const LoadsBroughtBack& of_patches) {
+    const std::vector<double>& forces = of_patches.forces;
     std::vector<Action> into(mesh_.triangles.size());
     bool is_any = !pressure_.lacks.empty();
     for (int t = 0; t < discrete_.triangles(); ++t) {
       if (!forces.empty()) add_load(t, forces[t], into[t]);
       is_any = !start(t, into[t]) || is_any;
     }
-    CarriedLoads carried{.loads = UncertainLoads(mesh_)};
+    CarriedLoads carried{.loads = UncertainLoads(mesh_), .norm_on_patches = std::sqrt(of_patches.square)};
     if (!is_any) return carried;
     for (const ContactPressure::Lack& lack : pressure_.lacks) act(lack.edge, {lack.force, lack.moment}, into);
     std::vector<int> order = from_fixed_parts();
@@ -315,8 +316,8 @@ class Carrier {
 }  // namespace
 
 CarriedLoads carry_uncertain_loads(const Discretization& discrete, const LawOnMesh& laws,
-                                   const ContactPressure& pressure, const std::vector<double>& forces) {
-  return Carrier(discrete, laws, pressure).run(forces);
+                                   const ContactPressure& pressure, const LoadsBroughtBack& of_patches) {
+  return Carrier(discrete, laws, pressure).run(of_patches);
 }
 
 LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws,

@@ -35,24 +35,24 @@ struct CarriedLoads {
   /// What is carried, with what the pressure and the rollers take; and without Γ_D the triangle to which.
   UncertainLoads loads;
   std::optional<int> root = std::nullopt;
+  double norm_on_patches = 0;  ///< of the stress that has brought loads back from there, which adds to `norm`
 };
-
-/// `forces`: of loads that are constant on each triangle and act there besides, those of LoadsBroughtBack;
-/// none if empty.
-CarriedLoads carry_uncertain_loads(const Discretization& discrete, const LawOnMesh& laws,
-                                   const ContactPressure& pressure, const std::vector<double>& forces = {});
 
 /// What is not known of the data on a patch of a membrane, whose triangles are parts of those of the whole:
 /// some stress on each of the latter carries it from part to part until the same force acts as a constant
 /// load on the triangle, which then stands for it in the whole.
 struct LoadsBroughtBack {
   double square = 0;           ///< of the norm of that stress
-  std::vector<double> forces;  ///< of each triangle of the whole, an entry each
+  std::vector<double> forces;  ///< of each triangle of the whole, an entry each; empty: none
 };
 
 /// `parents`: of each triangle of the patch, the one of the whole that it is a part of; there are so many
 /// `triangles`.
 LoadsBroughtBack bring_back(const Discretization& patch, const LawOnMesh& laws,
                             const ContactPressure& pressure, const std::vector<int>& parents, int triangles);
+
+/// With the loads that patches have brought back, if there are any.
+CarriedLoads carry_uncertain_loads(const Discretization& discrete, const LawOnMesh& laws,
+                                   const ContactPressure& pressure, const LoadsBroughtBack& of_patches = {});
 
 }  // namespace signorini
