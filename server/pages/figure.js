@@ -10,6 +10,7 @@ import { Projection } from "/pages/view.js";
 
 const mostMoved = 20000; // triangles that software draws ten times a second
 const still = 250; // ms after which what was moved is drawn as it is
+const smallestJumping = 16; // pixels of the edges of a surface's triangles that do not meet
 const mostMarks = 20000; // nodes or crosses that are drawn; more could not be told apart
 
 export class Figure {
@@ -83,32 +84,41 @@ export class Figure {
 
   // --- what is drawn
 
-  /// What the triangles show, and where they are, if that has changed.
+  /// What the triangles show, if that has changed.
   prepare() {
-    const { view, drawn, field, result: { mesh: { points, triangles } } } = this;
+    const { view, drawn, field, result: { mesh: { triangles } } } = this;
     const key = [field.key, view.smooth, this.other?.name].join();
-    if (drawn.values !== key) {
-      this.at = this.values(view.smooth);
-      const all = new Float64Array(triangles.length);
-      for (let i = 0; i < all.length; ++i) all[i] = this.at(i);
-      [this.least, this.most] = extent(all);
-      const middle = this.least / 2 + this.most / 2, half = this.most / 2 - this.least / 2 || 1;
-      this.normal = (value) => (value - middle) / half;
-      const normal = new Float32Array(all.length);
-      for (let i = 0; i < all.length; ++i) normal[i] = this.normal(all[i]);
-      this.drawing?.setValues(normal);
-      drawn.values = key;
+    if (drawn.values === key) return;
+    this.at = this.values(view.smooth);
+    const all = new Float64Array(triangles.length);
+    for (let i = 0; i < all.length; ++i) all[i] = this.at(i);
+    [this.least, this.most] = extent(all);
+    const middle = this.least / 2 + this.most / 2, half = this.most / 2 - this.least / 2 || 1;
+    this.normal = (value) => (value - middle) / half;
+    const normal = new Float32Array(all.length);
+    for (let i = 0; i < all.length; ++i) normal[i] = this.normal(all[i]);
+    this.drawing?.setValues(normal);
+    drawn.values = key;
+  }
+
+  /// Where the triangles are, if that has changed.
+  prepareShape() {
+    const { drawn, result: { mesh: { points, triangles } } } = this, shape = `${this.surface && this.joined}`;
+    if (drawn.shape === shape) return;
+    const places = new Float32Array(2 * triangles.length), [x, y] = this.middle;
+    for (let i = 0; i < triangles.length; ++i) {
+      places[2 * i] = (points[2 * triangles[i]] - x) / this.unit;
+      places[2 * i + 1] = (points[2 * triangles[i] + 1] - y) / this.unit;
     }
-    const shape = `${this.surface && view.smooth}`;
-    if (drawn.shape !== shape) {
-      const places = new Float32Array(2 * triangles.length), [x, y] = this.middle;
-      for (let i = 0; i < triangles.length; ++i) {
-        places[2 * i] = (points[2 * triangles[i]] - x) / this.unit;
-        places[2 * i + 1] = (points[2 * triangles[i] + 1] - y) / this.unit;
-      }
-      this.drawing?.setShape(places, this.shifts());
-      drawn.shape = shape;
-    }
+    this.drawing?.setShape(places, this.shifts());
+    drawn.shape = shape;
+  }
+
+  /// Whether triangles of a surface meet. Where it jumps one sees through it, which of small triangles would leave more
+  /// holes than surface; they meet until one is near enough to see the jumps.
+  get joined() {
+    const edge = Math.sqrt((8 * this.size[0] * this.size[1]) / this.count);
+    return this.view.smooth || edge * this.projection.scale < smallestJumping;
   }
 
   /// The values at corners; of the difference to the other result if there is one.
@@ -119,7 +129,7 @@ export class Figure {
     return (i) => own(i) - others(i);
   }
 
-  /// By which corners move: of a body at the points, of a membrane by its displacement as it is, with its jumps.
+  /// By which corners move: of a body at the points, of a membrane by its displacement.
   shifts() {
     const { mesh: { triangles }, displacement: { at_points: points } } = this.result;
     const shifts = new Float32Array((this.body ? 2 : 1) * triangles.length);
@@ -127,7 +137,7 @@ export class Figure {
       for (let i = 0; i < shifts.length; ++i) shifts[i] = points[2 * triangles[i >> 1] + (i & 1)] / this.largest;
       return shifts;
     }
-    this.heights = valueAt(this.fields.get("displacement"), this.view.smooth, triangles);
+    this.heights = valueAt(this.fields.get("displacement"), this.joined, triangles);
     for (let i = 0; i < shifts.length; ++i) shifts[i] = (this.heights(i) - this.base) / this.largest;
     return shifts;
   }
@@ -142,6 +152,7 @@ export class Figure {
     this.dense = dense;
     const lifted = this.body ? 0 : this.liftDrawn;
     this.projection = new Projection(view, this.surface, width, height, this.body ? this.size.map((half) => half + 0.5 * this.liftDrawn) : this.size, lifted);
+    this.prepareShape();
     this.scale = this.sharedScale?.() ?? this.ownScale();
     this.showScale();
     this.looked = {

@@ -13,6 +13,7 @@ before(async () => {
   page = await newPage(browser, { width: 640, height: 760, acceptDownloads: true });
   const membrane = { ...(await service.example("paper-nonconforming")), mesh: { divisions: [4, 4], pattern: "right" } };
   solves.constant = await service.solve(membrane);
+  solves.fine = await service.solve({ ...membrane, mesh: { divisions: [96, 96], pattern: "right" }, solver: { method: "active_set" } });
   solves.linear = await service.solve({ ...membrane, scheme: "conforming", solver: { method: "active_set" } });
   solves.body = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" } });
   solves.other = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" }, material: { young: 100, poisson: 0.3, plane: "strain" } });
@@ -201,6 +202,17 @@ test("A membrane is a surface that is turned, moved and laid flat", async () => 
   await page.getByRole("button", { name: "Surface" }).click();
   await page.mouse.move(0, 0);
   assert.equal(await look(), first);
+  wellDone();
+});
+
+test("A surface has no holes between small triangles", async () => {
+  await open(solves.fine, "field=stress&mesh=0");
+  const { width, height, data } = await pixelsOf(page, frame()), ground = data.readUInt32LE(0);
+  let holes = 0;
+  for (let y = Math.round(0.4 * height); y < 0.6 * height; ++y)
+    for (let x = Math.round(0.4 * width); x < 0.6 * width; ++x) holes += data.readUInt32LE(4 * (y * width + x)) === ground;
+  assert.equal(holes, 0);
+  assert.ok((await pick(0.5 * width, 0.5 * height)).triangle);
   wellDone();
 });
 
