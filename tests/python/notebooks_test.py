@@ -80,6 +80,7 @@ class Notebooks(unittest.TestCase):
         (cell,) = (cell for cell in notebook.cells if "from_file" in cell.source and cell.cell_type == "code")
         lines = [line for line in cell.source.splitlines() if not line.startswith("%")]
         self.assertEqual((len(lines), len(pictures(cell))), (3, 1))
+        self.assertNotIn("<Axes", text(cell))
         times = cell.metadata["execution"]
         began, ended = times["iopub.status.busy"], times["iopub.status.idle"]
         seconds = (datetime.fromisoformat(ended) - datetime.fromisoformat(began)).total_seconds()
