@@ -6,10 +6,11 @@
 #include "server/handlers/service.hpp"
 #include "server/http/request.hpp"
 #include "server/http/response.hpp"
+#include "server/http/router.hpp"
 
 namespace signorini::server {
 
-/// What a browser loads: pages, their styles and scripts; the files of server/pages, compiled in.
+/// What a browser loads: the shell of the pages, styles and scripts; the files of server/pages, compiled in.
 struct PageFile {
   std::string_view name;  ///< with its ending
   std::string_view text;
@@ -17,9 +18,9 @@ struct PageFile {
 
 const std::vector<PageFile>& page_files();
 
-/// One of them. What it shows comes from this service alone, and the browser is told so. Throws HttpError
-/// 404.
-Response page_response(std::string_view file);
+/// Shows a page: shell.html with a title, and with the style and the script of these names. What it loads
+/// comes from this service alone, and the browser is told so.
+Handler page_of(std::string_view title, std::string_view style, std::string_view script);
 
 /// `GET /pages/{file}`.
 Response get_page_file(Service& service, const Request& request);

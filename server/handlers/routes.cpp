@@ -26,9 +26,6 @@ Router routes(Service& service) {
                               Response (*handle)(Service&, const Request&)) -> Route {
     return {"GET", pattern, std::move(media_types), with(handle), Audience::clients, has_result};
   };
-  const auto page_of = [](std::string_view file) -> Handler {
-    return [file](const Request&) { return page_response(file); };
-  };
   const auto with_page = [](Route route, Handler page) {
     route.page = std::move(page);
     return route;
@@ -37,9 +34,10 @@ Router routes(Service& service) {
       {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result,
        require_readable},
       with_page({"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
-                page_of("solves.html")),
+                page_of("Solves · Signorini", "solves", "solves")),
       {"DELETE", "/v1/solves", document_types, with(delete_tagged)},
-      with_page({"GET", "/v1/solves/{id}", document_types, with(get_solve)}, page_of("solve.html")),
+      with_page({"GET", "/v1/solves/{id}", document_types, with(get_solve)},
+                page_of("Solve · Signorini", "solve", "solve")),
       {"DELETE", "/v1/solves/{id}", document_types, with(delete_solve)},
       long_reply("/v1/solves/{id}/result", document_types, get_result),
       long_reply("/v1/solves/{id}/result.vtu", {vtu_media_type}, get_result_vtu),
@@ -62,7 +60,8 @@ Router routes(Service& service) {
       {"POST", "/v1/validate", document_types, with(validate_problem), Audience::clients, nullptr,
        require_readable},
       {"GET", "/v1/examples", document_types, with(list_examples)},
-      with_page({"GET", "/v1/examples/{name}", document_types, with(get_example)}, page_of("problem.html")),
+      with_page({"GET", "/v1/examples/{name}", document_types, with(get_example)},
+                page_of("Example · Signorini", "start", "problem")),
       // An <img> of a page shows no token.
       {"GET",
        "/v1/examples/{name}/picture.svg",
@@ -74,8 +73,12 @@ Router routes(Service& service) {
       {"GET", "/readyz", {}, with(readyz), Audience::probes},
       {"GET", "/metrics", {}, with(get_metrics), Audience::monitors},
       {"GET", "/openapi.json", {"application/json"}, with(get_openapi), Audience::everybody},
-      {"GET", "/", {"text/html"}, page_of("start.html"), Audience::everybody},
-      {"GET", "/docs", {"text/html"}, page_of("docs.html"), Audience::everybody},
+      {"GET", "/", {"text/html"}, page_of("Signorini", "start", "start"), Audience::everybody},
+      {"GET",
+       "/docs",
+       {"text/html"},
+       page_of("The interface · Signorini", "docs", "docs"),
+       Audience::everybody},
       // Browsers ask for a style or script by what it is for, and may name neither type.
       {"GET", "/pages/{file}", {}, with(get_page_file), Audience::everybody},
   };

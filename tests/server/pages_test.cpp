@@ -1,5 +1,9 @@
 #include "server/handlers/pages.hpp"
 
+#include <map>
+#include <regex>
+#include <set>
+
 #include "api/examples.hpp"
 #include "running_service.hpp"
 
@@ -27,6 +31,30 @@ TEST_F(PagesTest, AreForBrowsersAndDocumentsForPrograms) {
     EXPECT_NE(page->get_header_value("Vary").find("Accept"), std::string::npos);
   }
   expect_problem(client_.Get("/v1/examples", {{"Accept", "text/html"}}), 406);
+}
+
+TEST_F(PagesTest, HaveOneShellAndTheirOwnTitlesStylesAndScripts) {
+  const std::map<std::string, std::string> titles{{"/", "Signorini"},
+                                                  {"/docs", "The interface · Signorini"},
+                                                  {"/v1/solves", "Solves · Signorini"},
+                                                  {"/v1/solves/" + submit("instant"), "Solve · Signorini"},
+                                                  {"/v1/examples/gap-sweep", "Example · Signorini"}};
+  std::set<std::string> scripts;
+  for (const auto& [path, title] : titles) {
+    const auto page = client_.Get(path, browser);
+    ASSERT_EQ(page->status, 200) << path;
+    EXPECT_NE(page->body.find("<title>" + title + "</title>"), std::string::npos) << page->body;
+    EXPECT_EQ(page->get_header_value("Content-Security-Policy"),
+              get("/pages/page.css")->get_header_value("Content-Security-Policy"));
+    const std::regex loaded("(?:href|src)=\"([^\"]*)\"");
+    std::string last;
+    for (std::sregex_iterator each(page->body.begin(), page->body.end(), loaded), end; each != end; ++each) {
+      last = (*each)[1];
+      EXPECT_EQ(get(last)->status, 200) << last;
+    }
+    scripts.insert(last);
+  }
+  EXPECT_EQ(scripts.size(), titles.size());
 }
 
 TEST_F(PagesTest, LoadNothingFromElsewhere) {
