@@ -38,7 +38,7 @@ export class History {
   show() {
     const step = Math.ceil(this.rows.length / mostDrawn), rows = this.rows.filter((_, i) => i % step === 0 || i === this.rows.length - 1);
     const curves = Object.entries(names).map(([key, name], curve) => ({ name, values: rows.map((row) => row[key] ?? NaN), dots: rows.length < 40, curve })).filter(({ values }) => values.some((value) => value > 0));
-    this.drawn.replaceChildren(curves.length ? plot({ label: "Residuals by iteration", x: { name: "iteration", values: rows.map((row) => row.iteration) }, y: { name: "residual", log: true }, curves, high: 300 }) : element("p", { className: "quiet" }, "No residual yet."));
+    this.drawn.replaceChildren(curves.length ? plot({ label: "Residuals by iteration", x: { name: "iteration", values: rows.map((row) => row.iteration), whole: true }, y: { name: "residual", log: true }, curves, high: 300 }) : element("p", { className: "quiet" }, "No residual above zero."));
     this.drawn.dataset.rows = this.rows.length;
     this.showTable();
   }

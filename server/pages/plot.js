@@ -18,7 +18,7 @@ function powerTicks(low, high) {
   return powers.length > 1 ? powers : [low, Math.sqrt(low * high), high];
 }
 
-function axisOf(values, logarithmic) {
+function axisOf(values, logarithmic, whole) {
   const own = values.filter((value) => Number.isFinite(value) && (!logarithmic || value > 0));
   let low = Math.min(...own), high = Math.max(...own);
   if (!own.length) [low, high] = logarithmic ? [0.1, 1] : [0, 1];
@@ -27,13 +27,13 @@ function axisOf(values, logarithmic) {
     return { low, high, ticks: powerTicks(low, high), share: (value) => Math.log(value / low) / Math.log(high / low), has: (value) => value > 0 };
   }
   if (high - low <= 1e-12 * Math.max(Math.abs(low), Math.abs(high))) [low, high] = low === 0 ? [0, 1] : [low - Math.abs(low) / 2, low + Math.abs(low) / 2];
-  return { low, high, ticks: evenTicks(low, high, 5), share: (value) => (value - low) / (high - low), has: Number.isFinite };
+  return { low, high, ticks: evenTicks(low, high, 5).filter((tick) => !whole || Number.isInteger(tick)), share: (value) => (value - low) / (high - low), has: Number.isFinite };
 }
 
-/// `x`: { name, values, log }, `y`: { name, log, zero }, `curves`: [{ name, values, dots, broken }], `stretches`: [[from, to]],
-/// `marked`: an index. `onPick(i)` is called for the row that is clicked.
+/// `x`: { name, values, log, whole }, `y`: { name, log, zero }, `curves`: [{ name, values, dots, broken }], `stretches`: [[from, to]],
+/// `marked`: an index. `whole`: values are counts. `onPick(i)` is called for the row that is clicked.
 export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 240, onPick }) {
-  const across = axisOf([...x.values], x.log), shown = curves.flatMap(({ values }) => [...values]);
+  const across = axisOf([...x.values], x.log, x.whole), shown = curves.flatMap(({ values }) => [...values]);
   const up = axisOf(y.zero ? [...shown, 0] : shown, y.log);
   const px = (value) => left + (wide - left - right) * across.share(value), py = (value) => high - bottom - (high - top - bottom) * up.share(value);
   const text = (place, anchor, own, more = {}) => drawn("text", { x: place[0], y: place[1], "text-anchor": anchor, ...more }, own);
@@ -43,7 +43,7 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
     across.ticks.map((value) => [drawn("line", { class: "grid", x1: px(value), x2: px(value), y1: top, y2: high - bottom }), text([px(value), high - bottom + 17], "middle", short(value, 3))]),
     text([(left + wide - right) / 2, high - 6], "middle", x.name), text([14, (top + high - bottom) / 2], "middle", y.name, { transform: `rotate(-90 14 ${(top + high - bottom) / 2})` }),
     curves.map(({ values, dots, broken, curve }, c) => {
-      const style = `curve${(curve ?? c) % 5}`;
+      const style = `curve${(curve ?? c) % 6}`;
       const places = [...values].map((value, i) => (up.has(value) && across.has(x.values[i]) ? [px(x.values[i]), py(value)] : null));
       const path = places.reduce((all, at, i) => (at ? `${all}${i && places[i - 1] ? "L" : "M"}${at[0].toFixed(1)} ${at[1].toFixed(1)}` : all), "");
       return [drawn("path", { class: `curve ${style}${broken ? " broken" : ""}`, d: path || "M0 0" }),
@@ -68,4 +68,4 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
   return element("div", { className: "plotted" }, legend(curves), svg, said);
 }
 
-const legend = (curves) => aria(element("ul", { className: "legend" }, curves.map(({ name, broken, curve }, i) => element("li", { className: `curve${(curve ?? i) % 5}${broken ? " broken" : ""}` }, name))), { "aria-label": "Curves" });
+const legend = (curves) => aria(element("ul", { className: "legend" }, curves.map(({ name, broken, curve }, i) => element("li", { className: `curve${(curve ?? i) % 6}${broken ? " broken" : ""}` }, name))), { "aria-label": "Curves" });

@@ -16,6 +16,8 @@ const parts = {
   asymmetry: "stress that is not symmetric",
 };
 
+const shareOf = (part) => (part > 0 && part < 5e-4 ? "less than 0.1 %" : percent(part));
+
 export function boundSection({ error_bound: bound, notes = [], advice }) {
   if (!bound) return section("bound", "Error bound", element("p", {}, "Nothing finite is known of the error."), notesOf(notes, advice));
   const { value, relative, guaranteed, unmet = [], energy_lower: lower, energy_upper: upper } = bound;
@@ -30,7 +32,7 @@ export function boundSection({ error_bound: bound, notes = [], advice }) {
     element("ul", { className: "shares" }, Object.entries(bound.parts).map(([name, part], i) => {
       const bar = element("span", { className: "bar" });
       bar.style.inlineSize = `${(100 * squares[i]) / whole}%`;
-      return element("li", {}, element("span", { className: "name" }, `${percent(squares[i] / whole)} from ${parts[name] ?? name}`), element("span", { className: "track" }, bar), element("span", { className: "quiet small" }, `${name} ${short(part, 4)}`));
+      return element("li", {}, element("span", { className: "name" }, `${shareOf(squares[i] / whole)} from ${parts[name] ?? name}`), element("span", { className: "track" }, bar), element("span", { className: "quiet small" }, `${name} ${short(part, 4)}`));
     })), notesOf(notes, advice));
 }
 
@@ -121,8 +123,8 @@ export function sweepSection(sweep, view) {
   const show = () => {
     const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
     choice.value = own + 1;
-    const x = { name: "entry", values: sweep.map((_, i) => i + 1) }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
-    body.replaceChildren(element("div", { className: "beside" },
+    const x = { name: "entry", values: sweep.map((_, i) => i + 1), whole: true }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
+    body.replaceChildren(element("div", { className: "beside wide" },
       plot({ label: "Contact force by entry", x, y: { name: "force", zero: true }, curves: [{ name: "contact force", values: of(({ contact }) => contact.force), dots: true }], ...picked }),
       plot({ label: "Largest pressure by entry", x, y: { name: "pressure", zero: true }, curves: [{ name: "largest pressure", values: of(({ contact }) => contact.max_pressure), dots: true }], ...picked }),
       plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),

@@ -2,7 +2,7 @@
 
 import { element } from "/pages/element.js";
 import { editor } from "/pages/editor.js";
-import { getJson, postJson } from "/pages/service.js";
+import { ask, getJson, postJson } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
 const main = shell();
@@ -45,7 +45,7 @@ main.append(
 try {
   const { examples } = await getJson("/v1/examples");
   gallery.append(...examples.map(card));
-  own.fill(JSON.stringify(await getJson("/v1/examples/elastic-block"), null, 2));
+  own.fill(await (await ask("/v1/examples/elastic-block", { headers: { Accept: "application/json" } })).text());
 } catch (error) {
   gallery.replaceChildren(element("li", { className: "fault" }, error.message));
 }

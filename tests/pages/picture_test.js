@@ -285,6 +285,18 @@ test("Two solves are side by side with one view and one scale, and their differe
   wellDone();
 });
 
+test("Curves are told apart by their colours, and iterations are counted in whole numbers", async () => {
+  await open(solves.constant);
+  const colours = await page.locator("#history .legend li").evaluateAll((all) => all.map((own) => getComputedStyle(own).color));
+  assert.ok(colours.length > 4);
+  assert.equal(new Set(colours).size, colours.length);
+  await open(solves.linear);
+  const told = await page.locator("#history .plot text[text-anchor=middle]").allTextContents();
+  assert.ok(told.includes("1") && told.includes("2"));
+  assert.deepEqual(told.filter((own) => own.includes(".")), []);
+  wellDone();
+});
+
 test("Below it stand the bound in words, contact, sweep, levels and study, and their numbers in tables", async () => {
   await open(solves.body);
   await page.locator("#bound").getByText(/^Proved: stress and displacement together are off by at most/).waitFor();
