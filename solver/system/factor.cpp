@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <ranges>
 
 #include <cblas.h>
 
@@ -57,7 +56,8 @@ void Factor::backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progre
   workspace.front.resize(largest_);
   double* local = workspace.front.data();
   Pace pace(progress);
-  for (const Panels::Panel& panel : panels_.all | std::views::reverse) {
+  for (auto last = panels_.all.rbegin(); last != panels_.all.rend(); ++last) {
+    const Panels::Panel& panel = *last;
     const auto unknowns = panels_.unknowns_of(panel);
     const int m = panel.size, p = panel.pivots;
     pace.add(static_cast<std::size_t>(m) * p);

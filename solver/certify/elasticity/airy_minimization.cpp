@@ -229,6 +229,7 @@ class Minimization {
       LinearForm condition;
       for (const auto& [point, sign] : {std::pair(side.from, -1), {side.to, 1}}) {
         const AiryPlace& place = places_[point];
+        if (place.size() == 0) continue;
         const Eigen::RowVectorXd row = sign * direction(side).transpose() * place.values.bottomRows<2>();
         for (int a = 0; a < place.size(); ++a) condition.emplace_back(place.first + a, row[a]);
       }
