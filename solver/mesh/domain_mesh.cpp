@@ -134,9 +134,9 @@ Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request, Progress
 }
 
 std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request) {
-  // An edge of a polygon has a triangle to itself; what is so large need not be looked at.
+  // Two triangles are predicted for an edge of a polygon; of so many edges nothing else need be looked at.
   const auto* polygon = std::get_if<Polygon>(&domain);
-  if (polygon && static_cast<std::int64_t>(Rings(*polygon).points.size()) > few_triangles)
+  if (polygon && 2 * static_cast<std::int64_t>(Rings(*polygon).points.size()) > few_triangles)
     return std::nullopt;
   if (PredictedSizes(domain)(request).triangles > few_triangles) return std::nullopt;
   try {

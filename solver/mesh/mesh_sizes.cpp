@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 #include "mesh/clusters.hpp"
@@ -85,14 +84,11 @@ MeshSizes sizes_of(const Mesh& mesh) {
 /// What its meshes have in common.
 class PredictedSizes::OfPolygon {
  public:
-  explicit OfPolygon(const Polygon& polygon) : rings_(polygon), area_(domain_area(rings_)) {
-    std::map<std::string, std::size_t> numbers;
-    for (const std::string& name : part_names(polygon)) numbers.insert({name, numbers.size()});
-    parts_ = numbers.size();
-    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e)
-      part_of_edge_.push_back(numbers.at(part_of(polygon, rings_, e)));
-    constexpr double most = 300'000;  // that a polygon without a fault has
-    in_narrow_places_ = narrow_places(rings_.within(UnitFrame(rings_.points)), most).triangles;
+  explicit OfPolygon(const Polygon& polygon)
+      : rings_(polygon), area_(domain_area(rings_)), parts_(parts_of(polygon)) {
+    const Rings unit = rings_.within(UnitFrame(rings_.points));
+    in_narrow_places_ =
+        narrow_places(unit, near_edges(unit, most_near_pairs), most_in_narrow_places).triangles;
     clusters_ = clusters(rings_.points);
   }
 
@@ -104,14 +100,14 @@ class PredictedSizes::OfPolygon {
       triangles += kTrianglesByDoubling *
                    std::max(0., std::log2(std::min(cluster.distance, size) / cluster.extent) - 1);
     MeshSizes sizes;
-    sizes.parts.resize(parts_);
+    sizes.parts.resize(parts_.names.size());
     for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
       const double length = (rings_.points[rings_.next(e)] - rings_.points[e]).norm();
       const double pieces =
           pieces_of({rings_.points[e], rings_.points[rings_.next(e)]}, length, size, request.sizes);
       if (length < size) triangles += kTrianglesByEdge;
       boundary += pieces;
-      MeshSizes::Part& own = sizes.parts[part_of_edge_[e]];
+      MeshSizes::Part& own = sizes.parts[parts_.of_side[rings_.side[e]]];
       own.edges += counted(pieces);
       if (rings_.circle[e] >= 0) own.chords += counted(pieces);
     }
@@ -135,8 +131,7 @@ class PredictedSizes::OfPolygon {
 
   const Rings rings_;
   const double area_;
-  std::size_t parts_ = 0;
-  std::vector<std::size_t> part_of_edge_;
+  const PolygonParts parts_;
   double in_narrow_places_ = 0;
   std::vector<Cluster> clusters_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "mesh/meeting_boxes.hpp"
@@ -10,28 +9,6 @@
 
 namespace signorini {
 namespace {
-
-/// Pairs of edges closer than they are long; more of them are an intricate domain indeed.
-constexpr std::size_t most_pairs = 5'000'000;
-
-Segment segment_of(const Rings& rings, int edge) {
-  return {rings.points[edge], rings.points[rings.next(edge)]};
-}
-
-double length_of(const Segment& segment) {
-  return (segment[1] - segment[0]).norm();
-}
-
-/// Calls visit(i, j) for every pair of edges closer to each other than they are long, until it returns false.
-template <typename Visit>
-void for_each_near_pair(const Rings& unit, const Visit& visit) {
-  std::vector<Box> boxes;
-  for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge) {
-    const Segment ends = segment_of(unit, edge);
-    boxes.push_back(box_around(ends, length_of(ends) / 2));
-  }
-  for_each_meeting_pair(boxes, visit);
-}
 
 /// An edge as its distance is asked for.
 struct Edge {
@@ -51,15 +28,15 @@ struct Edge {
 
 class Count {
  public:
-  Count(const Rings& unit, double enough) : rings_(unit), enough_(enough) {
+  Count(const Rings& unit, const EdgePairs& near, double enough) : rings_(unit), enough_(enough) {
     for (int ring = 0; ring < unit.size(); ++ring)
       domain_on_the_left_.push_back((unit.signed_area(ring) > 0) == (ring == 0));
     for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge)
-      edges_.emplace_back(segment_of(unit, edge));
+      edges_.emplace_back(unit.edge(edge));
+    sort_by_edge(near);
   }
 
   NarrowPlaces run() {
-    if (!find_pairs()) return {std::numeric_limits<double>::infinity(), last_pair_[0], last_pair_[1]};
     double most = 0;
     for (int edge = 0; edge < static_cast<int>(edges_.size()) && found_.triangles < enough_; ++edge) {
       const double before = found_.triangles;
@@ -83,16 +60,9 @@ class Count {
   };
 
   /// The other edges closer to an edge than it is long.
-  bool find_pairs() {
-    std::vector<std::array<int, 2>> pairs;
+  void sort_by_edge(const EdgePairs& pairs) {
     first_neighbour_.assign(edges_.size() + 1, 0);
-    for_each_near_pair(rings_, [&](int i, int j) {
-      pairs.push_back({i, j});
-      ++first_neighbour_[i], ++first_neighbour_[j];
-      last_pair_ = {i, j};
-      return pairs.size() < most_pairs;
-    });
-    if (pairs.size() >= most_pairs) return false;
+    for (const auto& [i, j] : pairs) ++first_neighbour_[i], ++first_neighbour_[j];
     // From here on where the neighbours of each edge end, and when all are there, where they begin.
     std::partial_sum(first_neighbour_.begin(), first_neighbour_.end(), first_neighbour_.begin());
     neighbours_.resize(2 * pairs.size());
@@ -100,7 +70,6 @@ class Count {
       neighbours_[--first_neighbour_[i]] = j;
       neighbours_[--first_neighbour_[j]] = i;
     }
-    return true;
   }
 
   /// Whether a point on an edge sees another one, at this vector from the nearest point of it, across the
@@ -153,7 +122,6 @@ class Count {
   std::vector<bool> domain_on_the_left_;  ///< of the edges of each ring
   std::vector<Edge> edges_;
   std::vector<int> neighbours_, first_neighbour_;  ///< of all edges, one after the other
-  std::array<int, 2> last_pair_{};
   std::vector<int> near_;        ///< the neighbours of the edge at hand, and behind them those of its pieces
   std::vector<double> squares_;  ///< of their distances
   double closest_ = 0;           ///< to the edge at hand, of those across that are closer than it is long
@@ -163,18 +131,22 @@ class Count {
 
 }  // namespace
 
-std::optional<std::array<int, 2>> pair_of_near_edges(const Rings& unit, std::size_t most) {
-  std::size_t pairs = 0;
-  std::optional<std::array<int, 2>> last;
-  for_each_near_pair(unit, [&](int i, int j) {
-    if (++pairs > most) last = {i, j};
-    return !last;
+EdgePairs near_edges(const Rings& unit, std::size_t most) {
+  std::vector<Box> boxes;
+  for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge) {
+    const Segment ends = unit.edge(edge);
+    boxes.push_back(box_around(ends, (ends[1] - ends[0]).norm() / 2));
+  }
+  EdgePairs pairs;
+  for_each_meeting_pair(boxes, [&](int i, int j) {
+    pairs.push_back({i, j});
+    return pairs.size() < most;
   });
-  return last;
+  return pairs;
 }
 
-NarrowPlaces narrow_places(const Rings& unit, double enough) {
-  return Count(unit, enough).run();
+NarrowPlaces narrow_places(const Rings& unit, const EdgePairs& near, double enough) {
+  return Count(unit, near, enough).run();
 }
 
 }  // namespace signorini

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <vector>
 
 #include "mesh/rings.hpp"
 
@@ -18,11 +18,20 @@ struct NarrowPlaces {
   int opposite = 0;  ///< the one closest to it
 };
 
-/// A pair of edges closer to each other than they are long if there are more such pairs than `most`; nothing
-/// if not. For any rings in the unit frame.
-std::optional<std::array<int, 2>> pair_of_near_edges(const Rings& unit, std::size_t most);
+/// What a polygon without a fault has at most: triangles in its narrow places, which take some seconds to
+/// make, and near edges, at which every check looks: so many take some tens of milliseconds.
+inline constexpr double most_in_narrow_places = 300'000;
+inline constexpr std::size_t most_near_pairs = 200'000;
 
-/// For rings in the unit frame that neither touch nor cross. Stops counting at `enough`.
-NarrowPlaces narrow_places(const Rings& unit, double enough);
+/// Pairs of edges, by their numbers.
+using EdgePairs = std::vector<std::array<int, 2>>;
+
+/// Those closer to each other than they are long, or the first `most` of them. For any rings in the unit
+/// frame.
+EdgePairs near_edges(const Rings& unit, std::size_t most);
+
+/// For rings in the unit frame that neither touch nor cross, and all their near edges. Stops counting at
+/// `enough`.
+NarrowPlaces narrow_places(const Rings& unit, const EdgePairs& near, double enough);
 
 }  // namespace signorini

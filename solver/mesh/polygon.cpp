@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
+#include <string_view>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Delaunay_mesh_face_base_2.h>
@@ -156,14 +156,6 @@ void mark_domain(Triangulation& triangulation, const std::vector<Vertex>& vertic
     Mesher::propagate_marks(face_inside(triangulation, vertices, unit, hole), false);
 }
 
-std::string hole_name(std::size_t hole) {
-  return "hole" + std::to_string(hole);
-}
-
-std::string side_name(const Polygon& polygon, std::size_t edge) {
-  return polygon.sides.empty() ? "side" + std::to_string(edge) : polygon.sides[edge];
-}
-
 [[noreturn]] void refuse_size(int max_triangles) {
   throw TooManyTriangles({{"/mesh/size", "the mesh would have more than " + std::to_string(max_triangles) +
                                              " triangles, which the sizes or narrow places of the domain "
@@ -233,12 +225,13 @@ class Extraction {
   Rings rings_as_cut() const { return rings_.with(on_edges_); }
 
   Mesh mesh(Progress* progress) && {
-    const std::vector<std::string> names = part_names(polygon_);
-    const auto edges = edges_of_parts(names);
+    const PolygonParts parts = parts_of(polygon_);
+    const auto edges = edges_of(parts);
     std::vector<BoundarySegment> segments;
-    for (int part = 0; part < static_cast<int>(names.size()); ++part)
+    for (int part = 0; part < static_cast<int>(edges.size()); ++part)
       for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part, circles_.at(edge[0])});
-    return make_mesh(std::move(points_), std::move(triangles_), names, segments, rings_.circles, progress);
+    return make_mesh(std::move(points_), std::move(triangles_), parts.names, segments, rings_.circles,
+                     progress);
   }
 
  private:
@@ -302,12 +295,10 @@ class Extraction {
     points_[point] = points_[from] + (part.dot(whole) / whole.squaredNorm()) * whole;
   }
 
-  std::vector<std::vector<std::array<int, 2>>> edges_of_parts(const std::vector<std::string>& names) const {
-    std::map<std::string, std::size_t> parts;
-    for (std::size_t i = 0; i < names.size(); ++i) parts[names[i]] = i;
-    std::vector<std::vector<std::array<int, 2>>> edges(names.size());
+  std::vector<std::vector<std::array<int, 2>>> edges_of(const PolygonParts& parts) const {
+    std::vector<std::vector<std::array<int, 2>>> edges(parts.names.size());
     for (int edge = 0; edge < static_cast<int>(pieces_.size()); ++edge) {
-      auto& of_part = edges[parts.at(part_of(polygon_, rings_, edge))];
+      auto& of_part = edges[parts.of_side[rings_.side[edge]]];
       of_part.insert(of_part.end(), pieces_[edge].begin(), pieces_[edge].end());
     }
     return edges;
@@ -332,18 +323,25 @@ void throw_if_any(std::vector<Fault> faults) {
 }  // namespace
 
 std::vector<std::string> part_names(const Polygon& polygon) {
-  std::vector<std::string> names;
-  std::set<std::string> known;
-  for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
-    const std::string name = side_name(polygon, i);
-    if (known.insert(name).second) names.push_back(name);
-  }
-  for (std::size_t i = 0; i < polygon.holes.size(); ++i) names.push_back(hole_name(i));
-  return names;
+  return parts_of(polygon).names;
 }
 
-std::string part_of(const Polygon& polygon, const Rings& rings, int edge) {
-  return rings.ring[edge] > 0 ? hole_name(rings.ring[edge] - 1) : side_name(polygon, rings.side[edge]);
+PolygonParts parts_of(const Polygon& polygon) {
+  PolygonParts parts;
+  std::map<std::string_view, int> known;
+  for (std::size_t i = 0; i < polygon.vertices.size(); ++i) {
+    int part = static_cast<int>(parts.names.size());
+    if (!polygon.sides.empty()) part = known.insert({polygon.sides[i], part}).first->second;
+    if (part == static_cast<int>(parts.names.size()))
+      parts.names.push_back(polygon.sides.empty() ? "side" + std::to_string(i) : polygon.sides[i]);
+    parts.of_side.push_back(part);
+  }
+  for (std::size_t i = 0; i < polygon.holes.size(); ++i) {
+    parts.of_side.resize(parts.of_side.size() + polygon.holes[i].size(),
+                         static_cast<int>(parts.names.size()));
+    parts.names.push_back("hole" + std::to_string(i));
+  }
+  return parts;
 }
 
 double area(const Polygon& polygon) {

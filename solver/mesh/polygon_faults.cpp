@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <set>
 
 #include "mesh/arc.hpp"
@@ -189,24 +188,18 @@ std::vector<Fault> faults_of_size(const std::string& where, double size, double 
   return {};
 }
 
-/// Narrow places may not ask for more triangles than this, which take some seconds to make.
-constexpr double most_in_narrow_places = 300'000;
-
-/// Every check looks at all pairs of edges that may lie close to each other: so many take some tens of
-/// milliseconds.
-std::vector<Fault> intricate_faults(const Rings& given, const Rings& unit) {
-  constexpr std::size_t most_near_pairs = 200'000;
-  const std::optional<std::array<int, 2>> last = pair_of_near_edges(unit, most_near_pairs);
-  if (!last) return {};
-  return {{unit.pointer_to(last->front()),
+std::vector<Fault> intricate_faults(const Rings& given, const Rings& unit, const EdgePairs& near) {
+  if (near.size() <= most_near_pairs) return {};
+  const auto& [edge, other] = near.back();
+  return {{unit.pointer_to(edge),
            "more than " + std::to_string(most_near_pairs) +
                " pairs of edges lie closer to each other than they are long, such as " +
-               given.in_words(last->front()) + " and " + given.in_words(last->back()) +
+               given.in_words(edge) + " and " + given.in_words(other) +
                ": leave out what the solution does not depend on, or send a mesh instead"}};
 }
 
-std::vector<Fault> narrow_faults(const Rings& given, const Rings& unit) {
-  const NarrowPlaces narrow = narrow_places(unit, most_in_narrow_places);
+std::vector<Fault> narrow_faults(const Rings& given, const Rings& unit, const EdgePairs& near) {
+  const NarrowPlaces narrow = narrow_places(unit, near, most_in_narrow_places);
   if (narrow.triangles < most_in_narrow_places) return {};
   const auto ends = [&](int e) {
     return to_string(given.points[e]) + " to " + to_string(given.points[given.next(e)]);
@@ -225,12 +218,13 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
   if (const std::string reason = why_no_frame(given.points); !reason.empty())
     return {{"/domain/vertices", reason}};
   const Rings unit = given.within(UnitFrame(given.points));
+  const EdgePairs near = near_edges(unit, most_near_pairs + 1);
   // Each check relies on the ones before it.
-  std::vector<Fault> faults = intricate_faults(given, unit);
+  std::vector<Fault> faults = intricate_faults(given, unit, near);
   if (faults.empty()) faults = repeated_points(given, unit);
   if (faults.empty()) faults = crossing_edges(given, unit);
   if (faults.empty()) faults = misplaced_holes(unit);
-  if (faults.empty()) faults = narrow_faults(given, unit);
+  if (faults.empty()) faults = narrow_faults(given, unit, near);
   if (faults.empty()) faults = sharp_angles(given, unit);
   return faults;
 }

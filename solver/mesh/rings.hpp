@@ -51,8 +51,13 @@ struct Rings {
   std::vector<int> first_vertex_;  ///< of each ring, and the number of vertices
 };
 
-/// The name of the part of the boundary that an edge of the polygon's rings lies in.
-std::string part_of(const Polygon& polygon, const Rings& rings, int edge);
+/// The parts of the boundary of a polygon.
+struct PolygonParts {
+  std::vector<std::string> names;
+  std::vector<int> of_side;  ///< of each edge of the polygon, as Rings::side numbers them
+};
+
+PolygonParts parts_of(const Polygon& polygon);
 
 /// The area of the domain: that inside the outer ring less that of the holes, whichever way they run.
 double domain_area(const Rings& rings);
