@@ -1,7 +1,6 @@
 #include "server/jobs/memory_store.hpp"
 
 #include <algorithm>
-#include <ranges>
 #include <unordered_set>
 
 #include <spdlog/spdlog.h>
@@ -209,8 +208,8 @@ JobPage MemoryStore::list(const ListQuery& query) const {
 std::vector<std::string> MemoryStore::ids(const ListQuery& query) const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> ids;
-  for (const auto& [id, entry] : std::views::reverse(entries_))
-    if (is_asked_for(entry.job, query)) ids.push_back(id);
+  for (auto job = entries_.rbegin(); job != entries_.rend(); ++job)
+    if (is_asked_for(job->second.job, query)) ids.push_back(job->first);
   return ids;
 }
 
