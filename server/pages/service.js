@@ -43,10 +43,19 @@ async function refusalOf(reply) {
   return new Refusal(reply.status, await reply.json().catch(() => ({})));
 }
 
-/// The reply to a request. Throws Refusal, and TypeError if the service cannot be reached.
+/// There is no service, or its reply breaks off.
+export class Unreached extends Error {
+  constructor() {
+    super("The service cannot be reached.");
+  }
+}
+const reached = (asked) => asked.catch((error) => { throw error instanceof TypeError ? new Unreached() : error; });
+const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
+
+/// The reply to a request. Throws Refusal and Unreached.
 export async function ask(path, { method = "GET", headers = {}, body, signal } = {}) {
   for (;;) {
-    const reply = await fetch(path, { method, headers: withToken(headers), body, signal, cache: "no-store" });
+    const reply = await reached(fetch(path, { method, headers: withToken(headers), body, signal, cache: "no-store" }));
     if (reply.ok) return reply;
     const refusal = await refusalOf(reply);
     if (reply.status !== 401) throw refusal;
@@ -55,7 +64,8 @@ export async function ask(path, { method = "GET", headers = {}, body, signal } =
 }
 
 export async function getJson(path, options = {}) {
-  return (await ask(path, { ...options, headers: { Accept: "application/json", ...options.headers } })).json();
+  const reply = await ask(path, { ...options, headers: { Accept: "application/json", ...options.headers } });
+  return reached(reply.json());
 }
 
 export const postJson = (path, body, signal) =>
@@ -67,7 +77,7 @@ export async function getBytes(path, onProgress = () => {}) {
   const pieces = [];
   let length = 0;
   const reader = reply.body.getReader();
-  for (let piece = await reader.read(); !piece.done; piece = await reader.read()) {
+  for (let piece = await reached(reader.read()); !piece.done; piece = await reached(reader.read())) {
     pieces.push(piece.value);
     length += piece.value.length;
     onProgress(length);
@@ -81,28 +91,34 @@ export async function getBytes(path, onProgress = () => {}) {
   return all;
 }
 
-/// Server-sent events, until the stream says that all is told; after a loss it goes on behind the last event.
-/// (EventSource cannot show a token.) `tell(name, id, data)`; `lost(true | false)` says whether the service is away.
-export async function follow(path, tell, lost = () => {}) {
-  let last = "", wait = 100;
-  for (;;) {
+/// What `does` returns, which is tried again as long as the service is away; `lost(true | false)` says whether it is.
+export async function persist(does, lost) {
+  for (let wait = 100; ; wait = Math.min(2 * wait, 2000)) {
     try {
-      const reply = await ask(path, { headers: { Accept: "text/event-stream", ...(last && { "Last-Event-ID": last }) } });
+      const found = await does();
       lost(false);
-      if (reply.status === 204) return;
-      wait = 100;
-      const ended = await readEvents(reply, (name, id, data) => {
-        if (id) last = id;
-        tell(name, id, data);
-        return name !== "progress";
-      });
-      if (ended) return;
+      return found;
     } catch (error) {
-      if (error instanceof Refusal && error.status < 500 && error.status !== 429) throw error;
+      const passes = error instanceof Unreached || error.status >= 500 || error.status === 429;
+      if (!passes) throw error;
     }
     lost(true);
-    await new Promise((resolve) => setTimeout(resolve, wait));
-    wait = Math.min(2 * wait, 2000);
+    await pause(wait);
+  }
+}
+
+/// Server-sent events, until the stream says that all is told; after a loss it goes on behind the last event.
+/// (EventSource cannot show a token.) `tell(name, id, data)`; for `lost` see persist().
+export async function follow(path, tell, lost = () => {}) {
+  for (let last = ""; ; lost(true), await pause(100)) {
+    const reply = await persist(() => ask(path, { headers: { Accept: "text/event-stream", ...(last && { "Last-Event-ID": last }) } }), lost);
+    if (reply.status === 204) return;
+    const ended = await readEvents(reply, (name, id, data) => {
+      if (id) last = id;
+      tell(name, id, data);
+      return name !== "progress";
+    });
+    if (ended) return;
   }
 }
 
@@ -110,7 +126,8 @@ export async function follow(path, tell, lost = () => {}) {
 async function readEvents(reply, tell) {
   const reader = reply.body.pipeThrough(new TextDecoderStream()).getReader();
   let text = "";
-  for (let piece = await reader.read(); !piece.done; piece = await reader.read()) {
+  const next = () => reader.read().catch(() => ({ done: true }));
+  for (let piece = await next(); !piece.done; piece = await next()) {
     text += piece.value;
     for (let end = text.indexOf("\n\n"); end >= 0; end = text.indexOf("\n\n")) {
       const members = Object.fromEntries(text.slice(0, end).split("\n").map((line) => {

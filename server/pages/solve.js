@@ -7,7 +7,7 @@ import { Figure } from "/pages/figure.js";
 import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
 import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
-import { ask, follow, getBytes, getJson } from "/pages/service.js";
+import { ask, follow, getBytes, getJson, persist } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
 
@@ -17,6 +17,7 @@ const head = element("div", { className: "head" }), picture = element("div", { c
 const history = new History();
 main.append(head, picture, history.whole, sections);
 
+const isAway = "The service cannot be reached; trying again.";
 const failed = (error) => picture.replaceChildren(element("p", { className: "notice bad", role: "alert" }, error.message));
 
 // --- the head
@@ -66,7 +67,7 @@ async function resultOf(solve, onProgress) {
 async function showResult(solve) {
   const said = element("p", { className: "quiet", role: "status" }, "Loading the result …");
   picture.replaceChildren(said);
-  const result = await resultOf(solve, (count) => { said.textContent = `Loading the result … ${bytes(count)}`; });
+  const result = await persist(() => resultOf(solve, (count) => { said.textContent = `Loading the result … ${bytes(count)}`; }), (away) => { if (away) said.textContent = isAway; });
   const results = [result], solves = [solve];
   if (view.with) {
     solves.push(await getJson(`/v1/solves/${encodeURIComponent(view.with)}`));
@@ -138,7 +139,7 @@ try {
   current = await getJson(path);
   showHead(current);
   if (isOpen(current)) picture.replaceChildren(element("p", { className: "quiet" }, "The picture comes when it is solved."));
-  await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = "The service cannot be reached; trying again."; else if (isOpen(current)) history.end.textContent = ""; });
+  await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = isAway; else if (isOpen(current)) history.end.textContent = ""; });
 } catch (error) {
   if (!current) head.replaceChildren(element("h1", {}, "A solve"));
   failed(error);

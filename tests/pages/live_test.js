@@ -2,32 +2,34 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { begin, end, newPage } from "./browser.js";
+import { begin, drawn, end, newPage } from "./browser.js";
+import { short } from "./element.js";
 
 let service, browser;
 before(async () => { [service, browser] = await begin(); });
 after(() => end(service, browser));
 
 /// The paper's iteration, whose every step takes a while.
-const slow = (divisions, ending) => ({
+const slow = (divisions, iterations) => ({
   model: "membrane", domain: { type: "rectangle", size: [1, 1] }, mesh: { divisions: [divisions, divisions] }, material: { stiffness: 1 }, load: { body: "x < 0.5 ? 10 : -10" },
   boundary: { left: { type: "fixed" }, right: { type: "fixed" }, bottom: { type: "contact" }, top: { type: "contact" } }, scheme: "nonconforming",
-  solver: { method: "uzawa", rho: 0.002, augmentation: 1, tolerance: 1e-12, ...ending },
+  solver: { method: "uzawa", rho: 0.002, augmentation: 1, tolerance: 1e-12, max_iterations: iterations },
 });
 
-/// Iterations in the table of the page.
-async function rowsOf(own) {
+/// What stands in a column of the table of the page.
+async function columnOf(own, place) {
   const details = own.locator("#history details");
   if (!(await details.evaluate((each) => each.open))) await details.locator("summary").click();
   await own.locator("#history tbody tr").first().waitFor();
-  return (await own.locator("#history tbody tr td:first-child").allInnerTexts()).map((text) => Number(text.replaceAll("\u202f", "")));
+  return own.locator(`#history tbody tr td:${place}-child`).allInnerTexts();
 }
+const inWords = (numbers) => numbers.map((number) => short(number, 6));
 
 const kIterations = 400;  // so many that most of them come while the page is open
 
 /// The longest time in ms from the event of a row to its picture, beyond that by which a timer is late.
 async function latestRow() {
-  const page = await newPage(browser), { id } = await service.call("/v1/solves", "POST", slow(140, { max_iterations: kIterations }));
+  const page = await newPage(browser), { id } = await service.call("/v1/solves", "POST", slow(140, kIterations));
   // Listens beside the page, and looks when its rows are drawn, by the same clock.
   await page.addInitScript(() => {
     window.came = [];
@@ -48,12 +50,12 @@ async function latestRow() {
     events.addEventListener("failed", () => events.close());
   });
   await page.goto(`${service.url}/v1/solves/${id}`);
-  await page.getByText(`It ended as iteration limit after ${kIterations} iterations.`).waitFor({ timeout: 60000 });
+  await page.getByText(`It ended as iteration limit after ${kIterations} iterations.`).waitFor({ timeout: 240000 });
   // Rows from before the page listened come in one piece.
   const lag = await page.evaluate(() => window.lag);
   const late = await page.evaluate(() => window.seen.map((time, i) => [time, window.came[i]]).filter(([, came]) => came > window.seen[0]).map(([time, came]) => time - came));
   assert.ok(late.length > 10);
-  assert.equal(String(await rowsOf(page)), String(Array.from({ length: kIterations }, (_, i) => i + 1)));
+  assert.deepEqual(await columnOf(page, "first"), inWords(Array.from({ length: kIterations }, (_, i) => i + 1)));
   assert.deepEqual(page.faults, []);
   await page.context().close();
   return Math.max(...late) - lag;
@@ -66,22 +68,43 @@ test("A row is on the screen at most 250 ms after its event", async () => {
   assert.ok(Math.min(...tries) <= 250, `${tries} ms`);
 });
 
+const rowsTold = (page, count) => page.waitForFunction((least) => Number(document.querySelector("#history [data-rows]")?.dataset.rows) > least, count);
+
 test("A service that is killed and started again under an open page loses no row, and tells none twice", async () => {
   const own = await newPage(browser);
-  // It runs for so long on any machine.
-  const { id } = await service.call("/v1/solves", "POST", slow(100, { max_iterations: 1000000, time_limit: 12 }));
-  await own.goto(`${service.url}/v1/solves/${id}`);
-  await own.waitForFunction(() => Number(document.querySelector("#history [data-rows]")?.dataset.rows) > 5, null, { timeout: 60000 });
+  // Ends by being cancelled: however fast the machine is, it runs while the service is killed.
+  const { id } = await service.call("/v1/solves", "POST", slow(100, 1000000)), call = `/v1/solves/${id}`;
+  await own.goto(service.url + call);
+  await rowsTold(own, 5);
   await service.kill();
-  await own.getByText("The service cannot be reached").waitFor();
+  await own.getByText("The service cannot be reached; trying again.").waitFor();
   await service.begin();
-  await own.getByText(/It ended as time limit after/).waitFor({ timeout: 60000 });
-  const { history } = await service.call(`/v1/solves/${id}/history`);
-  assert.equal(String(await rowsOf(own)), String(history.iteration));
+  while ((await service.call(`${call}/history`)).history.iteration.length < 20) await own.waitForTimeout(50);
+  await service.call(call, "DELETE");
+  await own.getByText("It is cancelled.").waitFor();
+  const { iteration, seconds } = (await service.call(`${call}/history`)).history;
+  const rowsAsTold = async () => {
+    await rowsTold(own, iteration.length - 1);
+    assert.equal(await own.locator("#history [data-rows]").getAttribute("data-rows"), String(iteration.length));
+    assert.deepEqual(await columnOf(own, "first"), inWords(iteration.slice(-1000)));
+    // By which the rows of one run are told from those of another.
+    assert.deepEqual(await columnOf(own, "last"), inWords(seconds.slice(-1000)));
+  };
+  await rowsAsTold();
   await service.kill();
   await service.begin();
   await own.reload();
-  await own.getByText(/It ended as time limit after/).waitFor();
-  assert.equal(String(await rowsOf(own)), String(history.iteration));
+  await own.getByText("It is cancelled.").waitFor();
+  await rowsAsTold();
+  assert.deepEqual(own.faults, []);
+});
+
+test("A service that dies while the result is loaded is asked again", async () => {
+  const own = await newPage(browser), id = await service.solve(slow(4, 3));
+  let asked = 0;
+  await own.route("**/result?*", (route) => (++asked > 2 ? route.continue() : route.abort()));
+  await own.goto(`${service.url}/v1/solves/${id}`);
+  await own.locator(".pictures").getByText("The service cannot be reached; trying again.").waitFor();
+  await drawn(own);
   assert.deepEqual(own.faults, []);
 });

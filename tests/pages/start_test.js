@@ -81,6 +81,8 @@ test("The schema says what may stand at the cursor", async () => {
 
 test("An own problem is solved", async () => {
   await page.goto(service.url);
+  // The example that comes into the empty editor does not meet what is written.
+  await page.getByText(/^Ready/).waitFor();
   await area().fill(JSON.stringify({ ...valid, title: "own" }));
   await page.getByRole("button", { name: "Solve", exact: true }).last().click();
   await page.waitForURL("**/v1/solves/*");
