@@ -105,20 +105,23 @@ void UzawaIteration::start() {
   determinant_.resize(discrete_.triangles());
   for (int t = 0; t < discrete_.triangles(); ++t)
     determinant_[t] = AffineMap(discrete_.mesh.corners(t)).determinant;
-  x_ = Eigen::VectorXd::Zero(discrete_.traces.unknowns());
+  x_ = given_ = Eigen::VectorXd::Zero(discrete_.traces.unknowns());
   imbalance_.resizeLike(load_);
+}
+
+void UzawaIteration::augment(const Eigen::MatrixXd& displacement) {
+  augmented_ = displacement + settings_.augmentation * load_;
 }
 
 void UzawaIteration::solve_first_equation(Progress& progress) {
   const int n = discrete_.traces.dofs_per_triangle(), free = discrete_.traces.free_unknowns();
   right_ = discrete_.coupling_load.head(free);
-  x_.head(free).setZero();
-  x_.tail(clearance_.size()) = clearance_;
-  augmented_ = displacement_ + settings_.augmentation * load_;
+  given_.tail(clearance_.size()) = clearance_;
+  augment(displacement_);
   for (int t = 0; t < discrete_.triangles(); ++t) {
     // t − E σ of the data alone: P (u + r Πf) − K_r m with the free traces at 0.
     LocalVector flux = local(coupling_, t, n).lazyProduct(augmented_.col(t));
-    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * discrete_.traces.values(t, x_);
+    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * discrete_.traces.values(t, given_);
     if (discrete_.traces.is_turned(t)) flux = (discrete_.traces.to_xy(t).transpose() * flux).eval();
     for (int j = 0; j < n; ++j) {
       const int dof = discrete_.traces.dof(t, j);
@@ -127,6 +130,7 @@ void UzawaIteration::solve_first_equation(Progress& progress) {
   }
   factor_->solve(right_, workspace_, progress);
   x_.head(free) = right_;
+  x_.tail(clearance_.size()) = clearance_;
 }
 
 void UzawaIteration::update_displacement() {
@@ -181,7 +185,13 @@ Iteration UzawaIteration::record() {
 Outcome UzawaIteration::run(Progress& progress) {
   double first_change = 0;
   while (progress.iterations() < settings_.max_iterations) {
-    solve_first_equation(progress);
+    try {
+      solve_first_equation(progress);
+    } catch (const TimeUp&) {
+      if (progress.iterations() == 0) throw;
+      augment(last_displacement_);  // as it was for σ^m, whose traces are still there
+      return Outcome::time_limit;
+    }
     update_displacement();
     update_clearance();
     const double change =

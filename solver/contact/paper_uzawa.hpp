@@ -37,6 +37,7 @@ class UzawaIteration {
   void eliminate(Factorization by, Progress& progress);
   bool add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
   void start();
+  void augment(const Eigen::MatrixXd& displacement);
   void solve_first_equation(Progress& progress);
   void update_displacement();
   void update_clearance();
@@ -57,7 +58,8 @@ class UzawaIteration {
   Eigen::VectorXd determinant_;            ///< det J of each triangle
   Eigen::VectorXd weight_;                 ///< <1, φ_i> of the contact unknowns
 
-  Eigen::VectorXd x_;  ///< traces for the current data, and λ^m behind them
+  Eigen::VectorXd x_;      ///< traces of σ^m, and λ^m behind them
+  Eigen::VectorXd given_;  ///< the same with traces of 0, for the next one
   Eigen::VectorXd right_;
   Eigen::MatrixXd displacement_, last_displacement_;
   Eigen::MatrixXd augmented_;  ///< u^m + r Π_V f

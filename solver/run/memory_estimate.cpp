@@ -166,7 +166,7 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   const double iteration = kNumber * displacements * (own + displacements + 5);
   return kSlack *
          (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
-          2 * kNumber * sizes.system +
+          3 * kNumber * sizes.system +
           sizes.triangles * (kMesh + discretization(problem, spaces) + element_sum(spaces, 1) + iteration));
 }
 

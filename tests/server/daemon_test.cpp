@@ -110,7 +110,7 @@ TEST_F(DaemonTest, ASweepServesWhatItCouldSolve) {
 }
 
 TEST_F(DaemonTest, CancelsASweepBetweenItsEntries) {
-  json problem = paper_problem(96);
+  json problem = paper_problem(sanitized ? 24 : 96);
   problem["sweep"] = json::array();
   for (int i = 0; i < 5000; ++i) problem["sweep"].push_back({{"load", {{"body", -1 - i}}}});
   const std::string id = submit(problem);
@@ -201,6 +201,7 @@ TEST_F(DaemonTest, PostedExamplesReproduceTheTableOfThePaper) {
 }
 
 TEST_F(DaemonTest, SolvesTheProblemOfThePaperOn256Squares) {
+  if (sanitized) GTEST_SKIP() << "fewer squares take the same ways";
   const auto reply =
       client_.Post("/v1/solves?wait=100&fields=summary", paper_problem(256).dump(), "application/json");
   ASSERT_EQ(reply->status, 200);
@@ -211,7 +212,7 @@ TEST_F(DaemonTest, SolvesTheProblemOfThePaperOn256Squares) {
 
 TEST_F(DaemonTest, CancelsALargeSolveWithinASecond) {
   for (const char* phase : {"assemble", "factorize"}) {
-    const std::string id = submit(paper_problem(768));
+    const std::string id = submit(paper_problem(sanitized ? 200 : 768));
     wait_for_phase(id, phase);
     const auto begin = Clock::now();
     EXPECT_EQ(client_.Delete("/v1/solves/" + id)->status, 202);

@@ -223,6 +223,18 @@ TEST(Limits, TimeLimitWithinAnIterationKeepsTheOneBefore) {
   expect_iterate(mprgp(contact, {1e-12, 10000}, uzawa, unknown), uzawa);
 }
 
+TEST(Limits, TimeLimitWithinAnIterationOfThePaperKeepsTheOneBefore) {
+  const Problem problem =
+      problems::paper(Scheme::nonconforming, 128);  // a solve looks at the time in between
+  Dawdler dawdler;
+  const Solution late = solve(problem, {PaperUzawa{1e-3, 1, 1, 1e-14, 20}, 1.}, dawdler);
+  EXPECT_EQ(late.summary.outcome, Outcome::time_limit);
+  const Solution first = solve(problem, {PaperUzawa{1e-3, 1, 1, 1e-14, 1}, {}});
+  EXPECT_EQ(late.history.size(), 1u);
+  EXPECT_TRUE(late.stress == first.stress);
+  EXPECT_TRUE(late.displacement == first.displacement);
+}
+
 /// Lets the time run out between the iterate and its bound.
 class PausesBeforeTheBound : public Observer {
  public:
