@@ -133,14 +133,13 @@ Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request, Progress
   return request.refine > 0 ? refine(mesh, request.refine, most_triangles, progress) : mesh;
 }
 
-std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request) {
+std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request, std::int64_t most) {
   // Two triangles are predicted for an edge of a polygon; of so many edges nothing else need be looked at.
   const auto* polygon = std::get_if<Polygon>(&domain);
-  if (polygon && 2 * static_cast<std::int64_t>(Rings(*polygon).points.size()) > few_triangles)
-    return std::nullopt;
-  if (PredictedSizes(domain)(request).triangles > few_triangles) return std::nullopt;
+  if (polygon && 2 * static_cast<std::int64_t>(Rings(*polygon).points.size()) > most) return std::nullopt;
+  if (PredictedSizes(domain)(request).triangles > most) return std::nullopt;
   try {
-    return std::visit(Make{request, 4 * few_triangles, nullptr}, domain);
+    return std::visit(Make{request, static_cast<int>(4 * most), nullptr}, domain);
   } catch (const TooManyTriangles&) {
     return std::nullopt;
   }

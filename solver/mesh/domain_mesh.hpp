@@ -31,8 +31,9 @@ LargestEdge coarse_edge(const Domain& domain);
 /// that only the making shows, and what a Progress throws, if there is one.
 Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request, Progress* progress = nullptr);
 
-/// The same without the refinements if it has few triangles, else nothing.
-std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request);
+/// The same without the refinements if it has at most about so many triangles, else nothing.
+std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request,
+                                    std::int64_t most = few_triangles);
 
 /// A mesh on which the data of a problem can be tried out; nothing if even a coarse one has more than few
 /// triangles.

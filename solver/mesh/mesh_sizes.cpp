@@ -1,7 +1,9 @@
 #include "mesh/mesh_sizes.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh/clusters.hpp"
@@ -16,10 +18,15 @@
 namespace signorini {
 namespace {
 
-/// Measured on meshes of polygons, as bounds: triangles by the square of the edge that they may have, edges
-/// of the boundary by that edge, triangles that an edge of the boundary has to itself if it is shorter, and
-/// triangles for every doubling of the distance from points that lie close together but the first.
-constexpr double kTrianglesByArea = 5.5, kEdgesByLength = 2, kTrianglesByEdge = 4, kTrianglesByDoubling = 15;
+/// Measured on meshes of polygons, as bounds: triangles by the square of the edge that they may have, pieces
+/// of the boundary that are nearly as long as they may be and are cut once more for their neighbours, edges
+/// of the boundary for every doubling of their length, and triangles for every doubling of the distance from
+/// a point, from points that lie close together but the first.
+constexpr double kTrianglesByArea = 6, kCutOnceMore = 1.2, kEdgesByDoubling = 2, kTrianglesByDoubling = 15;
+
+/// Triangles that a piece of the boundary has to itself: where they reach across the domain, where they are
+/// as large as the others, and where those around them grow to the size of the others.
+constexpr double kTrianglesAcross = 1, kTrianglesByEdge = 2, kTrianglesByShortEdge = 4;
 
 MeshSizes sizes_of(const Rectangle& rectangle, const MeshRequest& request) {
   const auto [x, y] = divisions(rectangle, request);
@@ -48,19 +55,74 @@ MeshSizes sizes_of(const MeshData& data) {
   return sizes;
 }
 
-/// The edges that one of the boundary is cut into.
-double pieces_of(const Segment& edge, double length, double size, const std::vector<LocalSize>& locals) {
-  double pieces = length <= size ? 1 : kEdgesByLength * length / size;
-  const Box box = box_around(edge, 0);
-  for (const LocalSize& local : locals) {
-    if (local.size >= std::min(size, length) || !is_within(local.at, wider(box, local.radius)) ||
-        distance(local.at, edge) > local.radius)
-      continue;
-    const double within = std::min(length, 2 * local.radius + local.size);
-    pieces += kEdgesByLength * (within / local.size + 2 * std::log2(size / local.size));
-  }
-  return pieces;
+/// The pieces into which a length is halved until none is longer.
+double halvings(double length, double longest) {
+  return std::exp2(std::max(0., std::ceil(std::log2(length / longest))));
 }
+
+/// What becomes of a stretch of the boundary: the mesher halves it until its pieces are no longer than the
+/// size, and no point across the domain lies in the circle around one, or nearly.
+struct Pieces {
+  Pieces(const NarrowPlaces::Stretch& stretch, double size) {
+    const double longest = std::min(size * (1 + 1e-9), 1.9 * stretch.width);
+    count = halvings(stretch.length, longest);
+    length = stretch.length / count;
+    reach_across = std::hypot(length, stretch.width) <= size;
+    constexpr double nearly = 0.7, layers = 3;  // of triangles, at least, that have others beside them
+    if (length > nearly * size && stretch.width > layers * length) count *= kCutOnceMore;
+  }
+
+  double count, length;
+  bool reach_across;  ///< one triangle does
+};
+
+/// The part of an edge, as shares of it, within a circle; none where the second is no larger.
+std::array<double, 2> shares_within(const Segment& edge, const Point& centre, double radius) {
+  const Vector way = edge[1] - edge[0];
+  const double square = way.squaredNorm(), middle = (centre - edge[0]).dot(way) / square;
+  const double from_line = (edge[0] + middle * way - centre).norm();
+  if (from_line >= radius) return {0, 0};
+  const double half = std::sqrt((radius * radius - from_line * from_line) / square);
+  return {std::max(0., middle - half), std::min(1., middle + half)};
+}
+
+/// The edges that a local size makes of one of the boundary: those of its size, and on both sides of them
+/// those that grow.
+double edges_around(const LocalSize& local, const Segment& edge, double size) {
+  const double length = (edge[1] - edge[0]).norm(), reach = local.radius + local.size;
+  if (local.size >= std::min(size, length) || !is_within(local.at, wider(box_around(edge, 0), reach)))
+    return 0;
+  const auto [begin, end] = shares_within(edge, local.at, reach);
+  if (end <= begin) return 0;
+  const double growing = std::log2(std::min(size, length) / local.size);
+  const int sides = (begin > 0 ? 1 : 0) + (end < 1 ? 1 : 0);
+  return kCutOnceMore * (end - begin) * halvings(length, local.size) + kEdgesByDoubling * sides * growing;
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Of a triangle whose sides are alike, by their length.
+constexpr double kHeight = 0.87;
+
+/// Where two edges meet at a sharp angle. One triangle fills it, as far as half of the shorter one: see
+/// narrow_places.hpp.
+struct Tip {
+  Point at;
+  std::array<int, 2> edges;
+  double reach, slope;  ///< how far, and by how much the domain grows wider with the distance
+
+  /// The pieces of each edge in there if the triangle may not reach so far.
+  double pieces(double size, const std::vector<LocalSize>& locals) const {
+    double filled = std::min(reach, size);
+    for (const LocalSize& local : locals)
+      filled = std::min(filled, std::max(local.size, (local.at - at).norm() - local.radius));
+    constexpr double by_width = 0.75;  // as measured
+    return by_width * std::log(std::min(reach, std::max(filled, size / slope)) / filled) / slope;
+  }
+};
+
+/// Of so many pairs of discs and edges it is looked how much of a disc lies in the domain: some ten
+/// milliseconds.
+constexpr std::size_t kMostLookedAt = 100'000;
 
 /// Counts as numbers, for a tiny size asks for more than integers hold.
 std::int64_t counted(double number) {
@@ -86,32 +148,58 @@ class PredictedSizes::OfPolygon {
  public:
   explicit OfPolygon(const Polygon& polygon)
       : rings_(polygon), area_(domain_area(rings_)), parts_(parts_of(polygon)) {
-    const Rings unit = rings_.within(UnitFrame(rings_.points));
-    in_narrow_places_ =
-        narrow_places(unit, near_edges(unit, most_near_pairs), most_in_narrow_places).triangles;
+    const UnitFrame frame(rings_.points);
+    const Rings unit = rings_.within(frame);
+    stretches_ = narrow_places(unit, near_edges(unit, most_near_pairs), most_in_narrow_places).stretches;
+    for (NarrowPlaces::Stretch& stretch : stretches_) {
+      stretch.length *= frame.extent();
+      stretch.width *= frame.extent();
+    }
+    for (int ring = 0; ring < rings_.size(); ++ring)
+      turns_.push_back((rings_.signed_area(ring) > 0) == (ring == 0) ? 1 : -1);
+    find_tips();
     clusters_ = clusters(rings_.points);
   }
 
   MeshSizes operator()(const MeshRequest& request) const {
     const double size = std::get<LargestEdge>(request.fineness).length;
-    double triangles = in_narrow_places_ + by_area(area_, size), boundary = 0;
-    for (const LocalSize& local : request.sizes) triangles += around(local, size);
+    double triangles = 0, across = 0, boundary = 0, along_it = 0;
+    std::vector<double> edges(parts_.names.size()), chords(parts_.names.size());
+    const auto add = [&](int edge, double pieces) {
+      const int part = parts_.of_side[rings_.side[edge]];
+      boundary += pieces;
+      edges[part] += pieces;
+      if (rings_.circle[edge] >= 0) chords[part] += pieces;
+    };
+    for (const NarrowPlaces::Stretch& stretch : stretches_) {
+      const Pieces pieces(stretch, size);
+      add(stretch.edge, pieces.count);
+      if (pieces.reach_across)
+        across += kTrianglesAcross * pieces.count;
+      else
+        triangles += pieces.count * (2 * pieces.length >= size ? kTrianglesByEdge : kTrianglesByShortEdge);
+      along_it += stretch.length * 0.5 *
+                  std::min(pieces.reach_across ? kInfinity : kHeight * pieces.length, stretch.width);
+    }
+    for (const Tip& tip : tips_)
+      for (const int edge : tip.edges) {
+        const double pieces = tip.pieces(size, request.sizes);
+        add(edge, pieces);
+        across += kTrianglesAcross * pieces;
+      }
+    triangles += across + by_area(std::max(0., area_ - along_it), size);
+    for (int e = 0; e < static_cast<int>(rings_.points.size()) && !request.sizes.empty(); ++e)
+      for (const LocalSize& local : request.sizes) add(e, edges_around(local, rings_.edge(e), size));
+    const bool are_many = request.sizes.size() * rings_.points.size() > kMostLookedAt;
+    for (const LocalSize& local : request.sizes) triangles += around(local, size, are_many);
     for (const Cluster& cluster : clusters_)
       triangles += kTrianglesByDoubling *
                    std::max(0., std::log2(std::min(cluster.distance, size) / cluster.extent) - 1);
+    triangles = std::max(triangles, boundary);
     MeshSizes sizes;
-    sizes.parts.resize(parts_.names.size());
-    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
-      const double length = (rings_.points[rings_.next(e)] - rings_.points[e]).norm();
-      const double pieces =
-          pieces_of({rings_.points[e], rings_.points[rings_.next(e)]}, length, size, request.sizes);
-      if (length < size) triangles += kTrianglesByEdge;
-      boundary += pieces;
-      MeshSizes::Part& own = sizes.parts[parts_.of_side[rings_.side[e]]];
-      own.edges += counted(pieces);
-      if (rings_.circle[e] >= 0) own.chords += counted(pieces);
-    }
-    triangles = std::max(triangles, 2 * boundary);
+    for (std::size_t part = 0; part < edges.size(); ++part)
+      sizes.parts.push_back({counted(edges[part]), counted(chords[part])});
+    sizes.across = across / triangles;
     sizes.triangles = counted(triangles);
     sizes.edges = counted((3 * triangles + boundary) / 2);
     sizes.points = counted((triangles + boundary) / 2) + 1;  // by Euler's formula
@@ -121,18 +209,58 @@ class PredictedSizes::OfPolygon {
  private:
   static double by_area(double area, double edge) { return kTrianglesByArea * area / (edge * edge); }
 
-  /// A disc with smaller triangles, and those between them and the others.
-  double around(const LocalSize& local, double size) const {
+  void find_tips() {
+    constexpr double sharp = 0.5;
+    std::vector<int> before(rings_.points.size());
+    for (int e = 0; e < static_cast<int>(before.size()); ++e) before[rings_.next(e)] = e;
+    for (int e = 0; e < static_cast<int>(before.size()); ++e) {
+      const Vector a = rings_.points[rings_.next(e)] - rings_.points[e],
+                   b = rings_.points[before[e]] - rings_.points[e];
+      const double sine = turns_[rings_.ring[e]] * (a.x() * b.y() - a.y() * b.x()) / (a.norm() * b.norm());
+      if (sine > 0 && sine < sharp && a.dot(b) > 0)
+        tips_.push_back({rings_.points[e], {before[e], e}, 0.5 * std::min(a.norm(), b.norm()), sine});
+    }
+  }
+
+  /// A disc with smaller triangles, and those between them and the others: for every doubling of their size a
+  /// ring, the first as long as the part of the disc's rim in the domain.
+  double around(const LocalSize& local, double size, bool are_many) const {
     if (local.size >= size) return 0;
-    const double reach = local.radius + 2 * local.size;
-    return by_area(std::min(std::numbers::pi * reach * reach, area_), local.size) +
-           4 * kTrianglesByEdge * std::log2(size / local.size) * (1 + local.radius / local.size);
+    const double reach = local.radius + local.size, disc = std::numbers::pi * reach * reach;
+    const double within = are_many ? std::min(disc, area_) : area_within(local.at, reach);
+    const double rim = kTrianglesByDoubling * local.radius / local.size;
+    return by_area(within, local.size) + within / disc * rim +
+           kTrianglesByDoubling * std::log2(size / local.size);
+  }
+
+  /// The area of the domain within a circle: over all edges the triangles to its centre, cut by the circle.
+  double area_within(const Point& centre, double radius) const {
+    double twice = 0;
+    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
+      const Segment edge = rings_.edge(e);
+      const auto [begin, end] = shares_within(edge, centre, radius);
+      const auto at = [&](double share) -> Vector { return edge[0] + share * (edge[1] - edge[0]) - centre; };
+      const auto sector = [&](const Vector& a, const Vector& b) {
+        return radius * radius * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      };
+      double of_edge = 0;
+      if (end > begin) {
+        const Vector a = at(begin), b = at(end);
+        of_edge = sector(at(0), a) + (a.x() * b.y() - a.y() * b.x()) + sector(b, at(1));
+      } else {
+        of_edge = sector(at(0), at(1));
+      }
+      twice += turns_[rings_.ring[e]] * of_edge;
+    }
+    return std::clamp(twice / 2, 0., area_);
   }
 
   const Rings rings_;
   const double area_;
   const PolygonParts parts_;
-  double in_narrow_places_ = 0;
+  std::vector<double> turns_;  ///< of the rings: by which the area inside counts for the domain
+  std::vector<NarrowPlaces::Stretch> stretches_;
+  std::vector<Tip> tips_;
   std::vector<Cluster> clusters_;
 };
 

@@ -18,13 +18,15 @@ struct MeshSizes {
 
   std::int64_t triangles = 0, edges = 0, points = 0;
   std::vector<Part> parts;  ///< in the order of part_names()
+  double across = 0;  ///< the share of triangles that reach across the domain, of a mesh that is not there
 };
 
 MeshSizes sizes_of(const Mesh& mesh);
 
 /// The sizes of the meshes that make_domain_mesh() makes of a domain without a fault, from lengths and areas,
 /// without their uniform refinements: exact but for a polygon, where they are rather too large than too
-/// small. What does not depend on the mesh is worked out once. The domain must outlive it.
+/// small, if not between long sides of unlike lengths very close together. What does not depend on the mesh
+/// is worked out once. The domain must outlive it.
 class PredictedSizes {
  public:
   explicit PredictedSizes(const Domain& domain);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "mesh/meeting_boxes.hpp"
@@ -104,7 +105,10 @@ class Count {
     }
     constexpr double steps = 4;  // of a piece, that its middle speaks for
     if (own <= steps * width) {
-      if (width < whole) found_.triangles += own / width;
+      const bool is_narrow = width < whole;
+      if (is_narrow) found_.triangles += own / width;
+      found_.stretches.push_back(
+          {piece.edge, own, is_narrow ? width : std::numeric_limits<double>::infinity()});
       return;
     }
     if (found_.triangles >= enough_) return;

@@ -13,9 +13,16 @@ namespace signorini {
 /// have edges of about d, so that they are about as many as ∫ ds / d along the boundary. Where two edges meet
 /// at a sharp angle that distance is their own, but for the tip, which one triangle fills.
 struct NarrowPlaces {
+  /// A part of an edge, cut from it by halving, along which the domain is about as wide.
+  struct Stretch {
+    int edge;
+    double length, width;  ///< infinitely wide if nothing is closer than the edge is long
+  };
+
   double triangles = 0;
-  int edge = 0;      ///< the one with the most of them
-  int opposite = 0;  ///< the one closest to it
+  int edge = 0;                    ///< the one with the most of them
+  int opposite = 0;                ///< the one closest to it
+  std::vector<Stretch> stretches;  ///< of all edges, one after the other
 };
 
 /// What a polygon without a fault has at most: triangles in its narrow places, which take some seconds to

@@ -11,6 +11,7 @@
 #include "mesh/mesh_sizes.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
+#include "mesh/rings.hpp"
 
 namespace signorini {
 namespace {
@@ -20,10 +21,14 @@ struct Counts {
   std::int64_t triangles = 0, edges = 0, points = 0;
   std::int64_t fixed_edges = 0, normal_edges = 0;  ///< on Γ_D; on rollers and contact
   std::int64_t contact_unknowns = 0;
+  double across = 0;  ///< MeshSizes::across
 };
 
 /// Meshes of so many triangles are cut into pieces to see what their factor takes.
 constexpr std::int64_t most_cut = 4 * few_triangles;
+
+/// And of so many if no coarser mesh shows the shape: some twentieth of a second.
+constexpr std::int64_t most_of_own_shape = 3 * few_triangles;
 
 /// The same with edges so many times as long.
 MeshRequest coarser(MeshRequest request, double times) {
@@ -46,6 +51,10 @@ class Estimation {
       const auto condition = problem_.boundary.find(name);
       conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
     }
+    const auto* polygon = std::get_if<Polygon>(&problem_.domain);
+    chains_.assign(conditions_.size(), polygon ? 0 : 1);
+    if (!polygon) return;
+    for (const int part : parts_of(*polygon).of_side) ++chains_[part];
   }
 
   /// By its own mesh and scheme.
@@ -78,6 +87,8 @@ class Estimation {
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles);
   void cut_coarser(std::int64_t unrefined, std::int64_t triangles);
+  std::optional<MeshRequest> coarser_with_few(std::int64_t triangles) const;
+  std::int64_t most_made(std::int64_t triangles) const;
   bool has_formula() const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
@@ -87,6 +98,7 @@ class Estimation {
   const Factorization by_;
   std::optional<const PredictedSizes> predicted_;  ///< of meshes that are not there
   std::vector<const Condition*> conditions_;       ///< of the parts
+  std::vector<int> chains_;                        ///< of the parts, at most: each has a node more than edges
   std::int64_t may_be_made_ = few_triangles;       ///< together, of meshes that are made to be counted
   std::int64_t may_be_cut_ = 2 * most_cut;         ///< of those, and of their refinements
   std::optional<MeshPieces> pieces_;               ///< of a mesh that is made, or given
@@ -135,28 +147,39 @@ bool Estimation::has_formula() const {
   return shape < nearly && 1 / shape < nearly;
 }
 
-/// By a mesh of the shape of those that it asks for, with edges twice as long, or four times, until it has
-/// few triangles; a rectangle's are made at once.
-void Estimation::cut_coarser(std::int64_t unrefined, std::int64_t triangles) {
+/// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. None if
+/// its vertices or its narrow places ask for more, whatever the size.
+std::optional<MeshRequest> Estimation::coarser_with_few(std::int64_t triangles) const {
   constexpr int attempts = 3;
-  // An edge of a polygon has triangles to itself, whatever the size.
-  const auto* polygon = std::get_if<Polygon>(&problem_.domain);
-  if (polygon && static_cast<std::int64_t>(polygon->vertices.size()) > few_triangles / 8) return;
   double times = 1;
-  const auto* rectangle = std::get_if<Rectangle>(&problem_.domain);
-  const double most = static_cast<double>(rectangle ? most_cut : few_triangles);
-  while (static_cast<double>(unrefined) > most * times * times) times *= 2;
+  while (static_cast<double>(triangles) > static_cast<double>(few_triangles) * times * times) times *= 2;
   for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
     const MeshRequest request = coarser(problem_.mesh, times);
-    std::optional<Mesh> mesh;
-    if (rectangle)
-      mesh = rectangle_mesh(*rectangle, divisions(*rectangle, request), request.pattern);
-    else if ((*predicted_)(request).triangles <= few_triangles)
-      mesh = make_small_mesh(problem_.domain, request);
-    if (!mesh) continue;
-    if (!rectangle) may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
-    return cut_finer(std::move(*mesh), triangles);
+    if ((*predicted_)(request).triangles <= few_triangles) return request;
   }
+  return std::nullopt;
+}
+
+/// By a mesh of the shape of those that it asks for. A rectangle's are made at once.
+void Estimation::cut_coarser(std::int64_t unrefined, std::int64_t triangles) {
+  if (const auto* rectangle = std::get_if<Rectangle>(&problem_.domain)) {
+    double times = 1;
+    while (static_cast<double>(unrefined) > static_cast<double>(most_cut) * times * times) times *= 2;
+    const MeshRequest request = coarser(problem_.mesh, times);
+    return cut_finer(rectangle_mesh(*rectangle, divisions(*rectangle, request), request.pattern), triangles);
+  }
+  const std::optional<MeshRequest> request = coarser_with_few(unrefined);
+  std::optional<Mesh> mesh = request ? make_small_mesh(problem_.domain, *request) : std::nullopt;
+  if (!mesh) return;
+  may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+  cut_finer(std::move(*mesh), triangles);
+}
+
+/// A mesh that is made to be counted has few triangles, or more where no coarser one shows its shape.
+std::int64_t Estimation::most_made(std::int64_t triangles) const {
+  const bool has_own_shape = std::holds_alternative<Polygon>(problem_.domain) && triangles > few_triangles &&
+                             triangles <= most_of_own_shape && !coarser_with_few(triangles);
+  return has_own_shape ? most_of_own_shape : few_triangles;
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
@@ -194,7 +217,7 @@ std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
   std::int64_t unknowns = 0;
   for (std::size_t part = 0; part < conditions_.size(); ++part)
     if (condition<Contact>(part))
-      unknowns += by_nodes ? nodes_in_the_middle(part, sizes) + 1 : sizes.parts[part].edges;
+      unknowns += by_nodes ? nodes_in_the_middle(part, sizes) + chains_[part] : sizes.parts[part].edges;
   return unknowns;
 }
 
@@ -203,8 +226,9 @@ Counts Estimation::count() {
   std::optional<Mesh> mesh;
   if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
-  if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= few_triangles)
-    mesh = make_small_mesh(problem_.domain, problem_.mesh);
+  if (const std::int64_t most = most_made(sizes.triangles);
+      !is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
+    mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
   if (mesh) {
     may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
     sizes = sizes_of(*mesh);
@@ -215,7 +239,8 @@ Counts Estimation::count() {
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
   } else {
-    pieces_.reset();
+    // Those of another mesh show the shape of a polygon too.
+    if (is_rectangle()) pieces_.reset();
     if (std::min(may_be_made_, may_be_cut_) > 0 && !has_formula()) cut_coarser(sizes.triangles, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
@@ -237,6 +262,7 @@ Counts Estimation::counts_of(const MeshSizes& sizes, std::int64_t contact) const
     if (condition<Roller>(part) || condition<Contact>(part)) counts.normal_edges += edges;
   }
   counts.contact_unknowns = contact;
+  counts.across = sizes.across;
   return counts;
 }
 
@@ -254,7 +280,8 @@ Counts grown(const Counts& start, const Adaptive& goal) {
           (triangles + boundary_edges) / 2 + 1,
           boundary(start.fixed_edges),
           boundary(start.normal_edges),
-          boundary(start.contact_unknowns)};
+          boundary(start.contact_unknowns),
+          start.across};
 }
 
 Estimate Estimation::operator()() {
@@ -285,7 +312,8 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
   const double n = static_cast<double>(estimate.system),
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
-  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr};
+  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr,
+                         counts.across};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);

@@ -39,6 +39,7 @@ class MeshPieces {
              const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components);
 
   bool empty() const { return pieces_.empty(); }
+  double triangles() const { return triangles_; }  ///< of the mesh that was cut
 
   /// Of the mesh with so many triangles, by uniform refinements or about such, and so many contact unknowns.
   FactorBytes factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns) const;

@@ -37,10 +37,27 @@ Grid grid_of(const Problem& problem, double triangles) {
   return {finer * x, finer * y, rectangle.size.x() / (finer * x), rectangle.size.y() / (finer * y), true};
 }
 
+/// Cuts through arms that lie side by side may run along one of them: by so many times are their fronts
+/// larger than those of a grid, at most, as measured on combs.
+constexpr double kPanelsOfArms = 1.5, kStacksOfArms = 2.5;
+
+/// And a coarser mesh that shows the shape of the pieces has fewer of its triangles near local sizes.
+constexpr double kNearLocalSizes = 1.25;
+
 FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  return sizes.pieces == nullptr || sizes.pieces->empty()
-             ? factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact)
-             : sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
+  if (sizes.pieces == nullptr || sizes.pieces->empty()) {
+    FactorBytes made =
+        factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact);
+    made.panels *= 1 + sizes.across * (kPanelsOfArms - 1);
+    made.stacks *= 1 + sizes.across * (kStacksOfArms - 1);
+    return made;
+  }
+  FactorBytes made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
+  if (!problem.mesh.sizes.empty() && sizes.pieces->triangles() < sizes.triangles) {
+    made.panels *= kNearLocalSizes;
+    made.stacks *= kNearLocalSizes;
+  }
+  return made;
 }
 
 /// CHOLMOD joins small supernodes and stores the zeros between them: by so many times are its panels larger
@@ -159,7 +176,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                             Factorization by) {
-  const SolveSizes free{sizes.triangles, sizes.system, 0, sizes.pieces};
+  const SolveSizes free{sizes.triangles, sizes.system, 0, sizes.pieces, sizes.across};
   const FactorBytes made = factor_of(problem, spaces, free, by);
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.

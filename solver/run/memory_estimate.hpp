@@ -13,6 +13,7 @@ struct SolveSizes {
   double system = 0;                   ///< unknowns of the SPD system
   double contact = 0;                  ///< contact unknowns
   const MeshPieces* pieces = nullptr;  ///< of the mesh, or of one that it comes from, where there is one
+  double across = 0;                   ///< MeshSizes::across
 };
 
 /// What a solve takes, in bytes, at its peaks: while it factors, and while it certifies. It takes no more,

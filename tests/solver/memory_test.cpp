@@ -11,6 +11,7 @@
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
 #include "progress/memory_meter.hpp"
+#include "run/study.hpp"
 
 namespace signorini::memory_test {
 namespace {
@@ -90,6 +91,49 @@ TEST_P(Memory, OfOtherMeshesAndLaws) {
   varying.material = YoungPoisson{problems::formula("3 + x"), Field(0.3), Plane::strain};
   varying.body = VectorField(problems::formula("sin(x)"), Field(-1));
   expect_bound(varying, {ActiveSet{}, std::nullopt}, tables_of_laws);
+}
+
+/// A comb of so many teeth, as far from each other as they are wide.
+Polygon comb(int teeth, double height) {
+  Polygon polygon{{{0, 0}, {2. * teeth, 0}}, {}, {"bottom", "right"}};
+  for (int i = teeth; i > 0; --i) {
+    polygon.vertices.insert(polygon.vertices.end(),
+                            {{2. * i, height}, {2. * i - 1, height}, {2. * i - 1, 1}, {2. * i - 2, 1}});
+    polygon.sides.insert(polygon.sides.end(), {"top", "side", "side", "side"});
+  }
+  polygon.sides.back() = "left";
+  return polygon;
+}
+
+Polygon band(double length) {
+  return {{{0, 0}, {length, 0}, {length, 1}, {0, 1}}, {}, {"bottom", "right", "top", "left"}};
+}
+
+/// Whether all of its mesh is made to foresee it, a coarser one, or none.
+TEST_P(Memory, OfPolygonsIsThatOfTheirShape) {
+  const Polygon angle{{{0, 0}, {1, 0}, {1, 0.1}, {0.1, 0.1}, {0.1, 1}, {0, 1}},
+                      {},
+                      {"bottom", "right", "top", "side", "side", "left"}};
+  const auto expect = [&](const Polygon& polygon, double size) {
+    SCOPED_TRACE(std::to_string(polygon.vertices.size()) + " vertices, size " + std::to_string(size));
+    Problem problem = in_polygon(membrane(GetParam(), 1, 1), size);
+    problem.body = Field(-10);
+    problem.domain = polygon;
+    expect_bound(problem);
+    if (!long_tests()) return;
+    problem = in_polygon(elastic(GetParam(), 1, 1), size);
+    problem.domain = polygon;
+    expect_bound(problem);
+  };
+  expect(band(2000), 100);
+  expect(band(500), 0.55);
+  expect(band(1), 0.015);
+  expect(angle, 0.007);
+  expect(comb(12, 10), 0.4);
+  expect(comb(8, 100), 50);
+  Polygon hollow = band(1);
+  hollow.holes = {{{0.3, 1e-4}, {0.6, 1e-4}, {0.6, 0.5}, {0.3, 0.5}}};
+  expect(hollow, 1);
 }
 
 /// Squares of the unit square, or of one that its points are moved to, as a client gives them.
@@ -176,8 +220,7 @@ class Drawn {
 
   Problem on_a_strip() {
     const double length = std::exp(between(0, 6));
-    problem_.domain =
-        Polygon{{{0, 0}, {length, 0}, {length, 1}, {0, 1}}, {}, {"bottom", "right", "top", "left"}};
+    problem_.domain = band(length);
     constexpr double more_than_made = 5.5;  // of the predicted sizes, so that the mesh is made to be counted
     problem_.mesh = MeshRequest(LargestEdge{std::sqrt(more_than_made * length / triangles_)});
     return problem_;
@@ -279,6 +322,37 @@ TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
   EXPECT_LE(peak, predicted);
   EXPECT_GE(peak + tables_of_laws, predicted / 2);
   EXPECT_NEAR(estimate(problem, sweep, settings).seconds, 3 * estimate(problem).seconds, 1e-12);
+}
+
+/// One after another, beside the solution of the problem itself; the largest is not the last.
+TEST_P(Memory, OfAStudyIsThatOfItsLargestRun) {
+  const auto expect = [&](const Problem& problem, const std::vector<MeshRequest>& meshes) {
+    Study study;
+    study.schemes = {GetParam()};
+    for (const MeshRequest& mesh : meshes) study.meshes.push_back({"", mesh});
+    const Settings settings{ActiveSet{}, std::nullopt};
+    std::vector<Estimate> runs = estimate(problem, study);
+    for (Estimate& run : runs) run = for_solve(run, settings);
+    const double predicted = memory_with_study(for_solve(estimate(problem), settings), runs);
+    Observer indifferent;
+    const MemoryMeter meter;
+    const Solution solution = solve(problem, settings);
+    const std::vector<StudyRow> rows = run_study(problem, study, settings, indifferent);
+    for (const StudyRow& row : rows) EXPECT_EQ(row.error, "");
+    const auto peak = static_cast<double>(meter.peak());
+    EXPECT_LE(peak, predicted);
+    EXPECT_GE(peak + tables, predicted / 2);
+  };
+  const int n = long_tests() ? 128 : 40;
+  const std::vector<MeshRequest> squares{MeshRequest(LargestEdge{0.3}), MeshRequest(Divisions{n, n}),
+                                         MeshRequest(Divisions{4, 4})};
+  expect(membrane(GetParam(), 8, 8), squares);
+  expect(elastic(GetParam(), 8, 8), squares);
+  expect(membrane(GetParam(), 2 * n, 2 * n), squares);
+  Problem narrow = in_polygon(membrane(GetParam(), 1, 1), 100);
+  narrow.body = Field(-10);
+  narrow.domain = band(300);
+  expect(narrow, {MeshRequest(LargestEdge{100}), MeshRequest(LargestEdge{0.6}), MeshRequest(LargestEdge{2})});
 }
 
 TEST_P(Memory, OfThePapersIteration) {

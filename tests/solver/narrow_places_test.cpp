@@ -8,6 +8,8 @@
 #include <random>
 
 #include "mesh/clusters.hpp"
+#include "mesh/domain_mesh.hpp"
+#include "mesh/mesh_sizes.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh_quality.hpp"
 
@@ -75,6 +77,56 @@ TEST(NarrowPlaces, AreCountedAsTheMesherCuts) {
         static_cast<double>(polygon_mesh(polygon, 1e5 * polygon.vertices[1].x()).triangles.size());
     EXPECT_LT(counted(polygon), 3 * triangles);
     EXPECT_GT(counted(polygon), triangles / 4);
+  }
+}
+
+/// The sizes that are foreseen of a mesh are hardly below its own, and seldom twice as large.
+void expect_foreseen(const Polygon& polygon, const MeshRequest& request, double least = 0.95) {
+  const auto expect = [&](std::int64_t foreseen, std::int64_t made) {
+    const double ratio = static_cast<double>(foreseen) / static_cast<double>(made);
+    EXPECT_GT(ratio, least);
+    EXPECT_LT(ratio, 2.5);
+  };
+  const Domain domain = polygon;
+  const MeshSizes foreseen = PredictedSizes(domain)(request),
+                  made = sizes_of(make_domain_mesh(domain, request));
+  expect(foreseen.triangles, made.triangles);
+  for (std::size_t part = 0; part < made.parts.size(); ++part)
+    if (made.parts[part].edges > 100) expect(foreseen.parts[part].edges, made.parts[part].edges);
+}
+
+TEST(NarrowPlaces, CutTheBoundaryToo) {
+  for (const Polygon& polygon : {strip(500), strip(2000), strip(5000), wedge(0.1), wedge(0.01), beside(1e-3),
+                                 zigzag(20, 0.01), zigzag(30, 0.01)}) {
+    SCOPED_TRACE(std::to_string(polygon.vertices.size()) + " vertices, " + std::to_string(counted(polygon)));
+    expect_foreseen(polygon, MeshRequest(LargestEdge{polygon.vertices[1].x()}));
+  }
+}
+
+/// Sides of unlike lengths are halved to unlike pieces, whose ends do not stand opposite: that takes more.
+TEST(NarrowPlaces, BetweenSidesOfUnlikeLengthsAreCutABitMore) {
+  expect_foreseen(beside(1e-4), MeshRequest(LargestEdge{1}), 0.7);
+}
+
+/// A long side is halved and halved again, so that its edges may be half as long as they may be.
+TEST(NarrowPlaces, AreCutFinerByTheSize) {
+  for (double size = 0.15; size < 4; size *= 1.2) {
+    SCOPED_TRACE(size);
+    expect_foreseen(strip(1000), MeshRequest(LargestEdge{size}));
+  }
+  for (const double size : {0.3, 0.1, 0.03}) {
+    SCOPED_TRACE(size);
+    expect_foreseen(wedge(0.02), MeshRequest(LargestEdge{size}));
+  }
+}
+
+/// What counts of a disc with smaller triangles is the part in the domain.
+TEST(NarrowPlaces, HaveLittleOfALocalSize) {
+  MeshRequest request(LargestEdge{50});
+  for (const double radius : {0., 5., 100.}) {
+    SCOPED_TRACE(radius);
+    request.sizes = {{{0, 0}, radius, 0.1}};
+    expect_foreseen(strip(1000), request);
   }
 }
 
