@@ -44,9 +44,11 @@ void expect_same(const Solution& found, const Solution& expected) {
 }
 
 TEST(Reuse, GivesTheAnswersOfASolveFromScratch) {
-  for (const Problem& family : problems::families())
+  const std::vector<Problem> families = problems::families();
+  for (std::size_t i = 0; i < families.size(); i += sanitized ? 3 : 1)
     for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{}}}) {
       if (sanitized && std::holds_alternative<Mprgp>(method)) continue;
+      const Problem& family = families[i];
       problems::Shelf shelf;
       for (unsigned seed = 0; seed < (sanitized ? 2 : 4); ++seed) {
         Problem problem = problems::with_other_data(family, seed);

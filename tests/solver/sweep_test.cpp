@@ -86,8 +86,9 @@ std::vector<Problem> variations_of(const Problem& family) {
 }
 
 TEST(Sweep, EntriesAreSingleSolves) {
-  for (Problem family : problems::families()) {
-    family = problems::with_other_data(family, 17);
+  const std::vector<Problem> families = problems::families();
+  for (std::size_t number = 0; number < families.size(); number += sanitized ? 3 : 1) {
+    Problem family = problems::with_other_data(families[number], 17);
     family.operator_key = "family";
     const std::vector<Problem> single = variations_of(family);
     std::vector<Variation> sweep;
