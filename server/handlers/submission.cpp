@@ -32,7 +32,9 @@ HttpError no_place(const QueueFull& full, std::size_t jobs, const std::string& n
   const std::string limit = std::to_string(full.limit);
   if (!full.share)
     return unavailable("queue-full", "The queue is full",
-                       limit + " requests are waiting, which is the limit (--queue-limit).", "5");
+                       limit + (full.limit == 1 ? " request is" : " requests are") +
+                           " waiting, which is the limit (--queue-limit).",
+                       "5");
   const std::string of_name = " solves of `" + name + "`", reason = "the limit of this name (--token-file).";
   if (jobs > full.limit)
     return {413,

@@ -22,5 +22,3 @@ export function colour(share, diverges) {
   const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1), before = Math.min(Math.floor(place), stops.length - 2);
   return stops[before].map((each, i) => Math.round(each + (place - before) * (stops[before + 1][i] - each)));
 }
-
-export const css = (rgb) => `rgb(${rgb.join(" ")})`;

@@ -1,7 +1,7 @@
 // A problem as text: checked by the service as one types, with its faults at their places, and with what the schema
 // lets stand at the cursor.
 
-import { aria, bytes, element, seconds, short } from "/pages/element.js";
+import { aria, bytes, counted, element, seconds } from "/pages/element.js";
 import { placesOf } from "/pages/json_places.js";
 import { beginning, Schema } from "/pages/schema.js";
 import { getJson, postJson, Refusal } from "/pages/service.js";
@@ -76,7 +76,7 @@ export function editor({ text }) {
       const found = await postJson("/v1/validate", area.value, own.signal);
       const { memory_bytes: memory, seconds: time } = found.estimated;
       const unknowns = Object.values(found.unknowns).reduce((a, b) => a + b);
-      said.textContent = `Ready: ${short(found.triangles)} triangles, ${short(unknowns)} unknowns, about ${bytes(memory)} and ${seconds(time)}.${(found.notes ?? []).map((note) => ` ${note}`).join("")}`;
+      said.textContent = `Ready: ${counted(found.triangles, "triangle")}, ${counted(unknowns, "unknown")}, about ${bytes(memory)} and ${seconds(time)}.${(found.notes ?? []).map((note) => ` ${note}`).join("")}`;
       button.disabled = false;
       show([]);
     } catch (error) {

@@ -32,8 +32,10 @@ export function short(number, digits = 4) {
 }
 const superscript = (text) => [...text].map((c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c])).join("");
 
+export const counted = (count, name) => `${short(count)} ${name}${count === 1 ? "" : "s"}`;
 export const percent = (share) => `${short(share < 0.0995 ? 100 * share : Math.round(100 * share), 2)} %`;
 export const seconds = (time) => (time < 0.0995 ? `${short(1000 * time, 2)} ms` : time < 99.5 ? `${short(time, 3)} s` : `${short(time / 60, 2)} min`);
+export const boundInWords = (bound) => (bound ? `${percent(bound.relative)}${bound.guaranteed ? "" : ", not proved"}` : "–");
 export function bytes(count) {
   const power = count > 0 ? Math.min(4, Math.floor(Math.log(count) / Math.log(1024))) : 0;
   return `${short(count / 1024 ** power, 3)} ${["bytes", "KiB", "MiB", "GiB", "TiB"][power]}`;

@@ -40,7 +40,7 @@ function once(make) {
   return () => (made ??= make());
 }
 
-export function areasOf({ points, triangles }) {
+function areasOf({ points, triangles }) {
   const areas = new Float64Array(triangles.length / 3);
   for (let t = 0; t < areas.length; ++t) {
     const [a, b, c] = [2 * triangles[3 * t], 2 * triangles[3 * t + 1], 2 * triangles[3 * t + 2]];

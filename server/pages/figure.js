@@ -5,6 +5,7 @@ import { colour, scaleOf } from "/pages/colours.js";
 import { Drawing } from "/pages/drawing.js";
 import { aria, element, short } from "/pages/element.js";
 import { extent, fieldsOf, isBody, valueAt } from "/pages/fields.js";
+import { foundationOf } from "/pages/foundation.js";
 import { nodesOf } from "/pages/nodes.js";
 import { Projection } from "/pages/view.js";
 
@@ -13,9 +14,15 @@ const still = 250; // ms after which what was moved is drawn as it is
 const smallestJumping = 16; // pixels of the edges of a surface's triangles that do not meet
 const mostMarks = 20000; // nodes or crosses that are drawn; more could not be told apart
 
+function stroke(pen, colour, width) {
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.stroke();
+}
+
 export class Figure {
   constructor(result, view, name) {
-    Object.assign(this, { result, view, name, fields: fieldsOf(result), body: isBody(result), drawn: {}, scheduled: false });
+    Object.assign(this, { result, view, name, fields: fieldsOf(result), body: isBody(result), drawn: {}, picked: -1, scheduled: false });
     this.canvas = element("canvas");
     this.over = element("canvas");
     this.frame = aria(element("div", { className: "frame", tabIndex: 0 }, this.canvas, this.over), { role: "application", "aria-roledescription": "picture", "aria-label": name });
@@ -36,6 +43,7 @@ export class Figure {
     addEventListener("themechange", () => this.schedule());
     new ResizeObserver(() => this.schedule()).observe(this.frame);
   }
+
 
   get surface() {
     return !this.body && (this.view.surface ?? true);
@@ -229,23 +237,31 @@ export class Figure {
     for (const [name, edges] of Object.entries(mesh.boundary)) {
       pen.beginPath();
       this.trace(pen, edges);
-      pen.strokeStyle = style.getPropertyValue(name in contact ? "--accent" : "--quiet");
-      pen.lineWidth = name in contact ? 2.5 : 1.2;
-      if (!this.surface || name in contact) pen.stroke();
+      if (name in contact) stroke(pen, style.getPropertyValue("--accent"), 2.5);
+      else if (!this.surface) stroke(pen, style.getPropertyValue("--quiet"), 1.2);
+    }
+    if (this.body) {
+      pen.beginPath();
+      for (const line of this.foundation()) line.forEach((place, i) => pen[i ? "lineTo" : "moveTo"](...place));
+      pen.setLineDash([7, 4]);
+      stroke(pen, style.getPropertyValue("--ink"), 1.6);
+      pen.setLineDash([]);
     }
     if (view.nodes) this.drawNodes(pen, style);
     if (view.crosses && this.body) this.drawCrosses(pen, style);
-    if (this.picked !== undefined && this.picked >= 0) {
+    if (this.picked >= 0) {
       pen.beginPath();
       for (let k = 0; k < 3; ++k) pen[k ? "lineTo" : "moveTo"](...this.corner(3 * this.picked + k));
       pen.closePath();
-      pen.strokeStyle = "#fff";
-      pen.lineWidth = 3.5;
-      pen.stroke();
-      pen.strokeStyle = "#000";
-      pen.lineWidth = 1.5;
-      pen.stroke();
+      stroke(pen, "#fff", 3.5);
+      stroke(pen, "#000", 1.5);
     }
+  }
+
+  /// Lines of places where the foundation is; the gap is as many times too large as the deformation.
+  foundation() {
+    this.lines ??= this.body ? foundationOf(this.result) : [];
+    return this.lines.map((line) => line.map(([x, y, dx, dy]) => this.pixelOf(x + this.lift * dx, y + this.lift * dy)));
   }
 
   /// Edges that follow each other are one line, with corners that are not told apart left out.
@@ -278,7 +294,6 @@ export class Figure {
       }
       seen.forEach((own) => draw(...own));
     };
-    pen.lineWidth = 1.6;
     marks(this.nodes.stress, ([x, y], corners, weights) => {
       const opposite = weights.indexOf(0);
       pen.beginPath();
@@ -289,20 +304,14 @@ export class Figure {
         pen.moveTo(x - nx, y - ny);
         pen.lineTo(x + nx, y + ny);
       }
-      pen.strokeStyle = ground;
-      pen.lineWidth = 4;
-      pen.stroke();
-      pen.strokeStyle = ink;
-      pen.lineWidth = 1.6;
-      pen.stroke();
+      stroke(pen, ground, 4);
+      stroke(pen, ink, 1.6);
     });
     marks(this.nodes.displacement, ([x, y]) => {
       pen.beginPath();
       pen.arc(x, y, 2.6, 0, 7);
       pen.fillStyle = ink;
-      pen.strokeStyle = ground;
-      pen.lineWidth = 1.6;
-      pen.stroke();
+      stroke(pen, ground, 1.6);
       pen.fill();
     });
     for (const [x, y] of this.nodes.clearance.map((own) => this.clearanceNode(own)).filter((at) => this.isSeen(at))) {
@@ -310,9 +319,7 @@ export class Figure {
       pen.arc(x, y, 4.5, 0, 7);
       pen.fillStyle = ground;
       pen.fill();
-      pen.strokeStyle = style.getPropertyValue("--accent");
-      pen.lineWidth = 2.2;
-      pen.stroke();
+      stroke(pen, style.getPropertyValue("--accent"), 2.2);
     }
   }
   /// It lies between the ends of an edge.
@@ -327,7 +334,6 @@ export class Figure {
     const [low, high] = extent(principal), largest = Math.max(-low, high) || 1;
     const apart = 14, arm = 7, taken = new Set();
     const colours = [style.getPropertyValue("--pull"), style.getPropertyValue("--push")];
-    pen.lineWidth = 1.3;
     for (let t = 0; t < this.count; ++t) {
       const corners = [0, 1, 2].map((k) => this.corner(3 * t + k));
       const at = [0, 1].map((c) => (corners[0][c] + corners[1][c] + corners[2][c]) / 3);
@@ -336,17 +342,13 @@ export class Figure {
       taken.add(cell);
       const [xx, yy, xy] = stress.subarray(3 * t, 3 * t + 3), angle = 0.5 * Math.atan2(2 * xy, xx - yy);
       for (let c = 0; c < 2; ++c) {
-        const size = (arm * Math.abs(principal[2 * t + c])) / largest ** 1, way = angle + (c * Math.PI) / 2;
+        const size = (arm * Math.abs(principal[2 * t + c])) / largest, way = angle + (c * Math.PI) / 2;
         const [dx, dy] = [Math.cos(way) * Math.max(size, 0.6), -Math.sin(way) * Math.max(size, 0.6)];
         pen.beginPath();
         pen.moveTo(at[0] - dx, at[1] - dy);
         pen.lineTo(at[0] + dx, at[1] + dy);
-        pen.strokeStyle = "#ffffffb0";
-        pen.lineWidth = 3;
-        pen.stroke();
-        pen.strokeStyle = colours[principal[2 * t + c] < 0 ? 1 : 0];
-        pen.lineWidth = 1.5;
-        pen.stroke();
+        stroke(pen, "#ffffffb0", 3);
+        stroke(pen, colours[principal[2 * t + c] < 0 ? 1 : 0], 1.5);
       }
     }
   }

@@ -1,6 +1,6 @@
 // The residuals of each iteration, live; a solve that is begun anew tells all of them again.
 
-import { element, short, table } from "/pages/element.js";
+import { counted, element, table } from "/pages/element.js";
 import { plot } from "/pages/plot.js";
 import { section } from "/pages/sections.js";
 
@@ -46,6 +46,6 @@ export class History {
   showTable() {
     if (!this.details.open) return;
     const keys = ["iteration", ...Object.keys(names), "active", "seconds"].filter((key) => this.rows.some((row) => key in row));
-    this.details.replaceChildren(this.details.firstChild, table(`${short(this.rows.length)} iterations`, keys.map((key) => names[key] ?? key), this.rows.slice(-1000).map((row) => keys.map((key) => row[key] ?? "–"))));
+    this.details.replaceChildren(this.details.firstChild, table(counted(this.rows.length, "iteration"), keys.map((key) => names[key] ?? key), this.rows.slice(-1000).map((row) => keys.map((key) => row[key] ?? "–"))));
   }
 }

@@ -23,7 +23,7 @@ export function nodesOf({ mesh: { points, triangles, boundary }, stress: { space
 }
 
 /// Each on the edge of its part that it is nearest to.
-function clearanceNodes(points, edges, places) {
+export function clearanceNodes(points, edges, places) {
   const found = [];
   for (let i = 0; i < places.length; i += 2) {
     let best = [Infinity];

@@ -11,11 +11,11 @@ function evenTicks(low, high, count) {
   return Array.from({ length: Math.max(0, Math.floor(high / step + 1e-9) - first + 1) }, (_, i) => (first + i) * step);
 }
 
-/// Powers of ten, or where there is none, even ones.
+/// Powers of ten, or where there are not two, their double and fivefold too.
 function powerTicks(low, high) {
   const from = Math.ceil(Math.log10(low) - 1e-9), to = Math.floor(Math.log10(high) + 1e-9), step = Math.max(1, Math.ceil((to - from) / 6));
   const powers = Array.from({ length: Math.max(0, Math.floor((to - from) / step) + 1) }, (_, i) => 10 ** (from + i * step));
-  return powers.length > 1 ? powers : [low, Math.sqrt(low * high), high];
+  return powers.length > 1 ? powers : [from - 1, from].flatMap((power) => [1, 2, 5].map((each) => each * 10 ** power)).filter((tick) => tick >= low && tick <= high);
 }
 
 function axisOf(values, logarithmic, whole) {

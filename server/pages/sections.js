@@ -1,6 +1,7 @@
 // What stands below the picture of a solve, a section each.
 
-import { element, percent, seconds, short, table } from "/pages/element.js";
+import { counted, element, percent, seconds, short, table } from "/pages/element.js";
+import { clearanceNodes } from "/pages/nodes.js";
 import { plot } from "/pages/plot.js";
 
 const numbers = (name, ...tables) => element("details", {}, element("summary", {}, name), tables);
@@ -18,16 +19,17 @@ const parts = {
 
 const shareOf = (part) => (part > 0 && part < 5e-4 ? "less than 0.1 %" : percent(part));
 
+/// In one sentence, and why it is not proved.
+const verdictOf = ({ relative, guaranteed, unmet = [] }) => [
+  guaranteed ? element("p", { className: "verdict good" }, `Proved: stress and displacement together are off by at most ${percent(relative)} of the stress, in the energy norm.`)
+    : element("p", { className: "verdict open" }, `Estimated: stress and displacement together are off by about ${percent(relative)} of the stress, in the energy norm. It is not proved here.`),
+  unmet.length ? element("ul", {}, unmet.map((reason) => element("li", {}, reason))) : ""];
+
 export function boundSection({ error_bound: bound, notes = [], advice }) {
   if (!bound) return section("bound", "Error bound", element("p", {}, "Nothing finite is known of the error."), notesOf(notes, advice));
-  const { value, relative, guaranteed, unmet = [], energy_lower: lower, energy_upper: upper } = bound;
+  const { value, energy_lower: lower, energy_upper: upper } = bound;
   const squares = Object.values(bound.parts).map((part) => part * part), whole = squares.reduce((a, b) => a + b, 0) || 1;
-  const verdict = guaranteed
-    ? `Proved: stress and displacement together are off by at most ${percent(relative)} of the stress, in the energy norm.`
-    : `Estimated: stress and displacement together are off by about ${percent(relative)} of the stress, in the energy norm. It is not proved here.`;
-  return section("bound", "Error bound",
-    element("p", { className: guaranteed ? "verdict good" : "verdict open" }, verdict),
-    unmet.length ? element("ul", {}, unmet.map((reason) => element("li", {}, reason))) : "",
+  return section("bound", "Error bound", verdictOf(bound),
     element("p", {}, `The energy of the exact solution lies between ${short(lower, 8)} and ${short(upper, 8)}. The bound itself is ${short(value, 6)}; of its square come`),
     element("ul", { className: "shares" }, Object.entries(bound.parts).map(([name, part], i) => {
       const bar = element("span", { className: "bar" });
@@ -40,27 +42,31 @@ const notesOf = (notes, advice) => [advice && element("p", { className: "notice 
 
 // --- the contact
 
-function lengths(points) {
-  const along = new Float64Array(points.length / 2);
-  for (let i = 1; i < along.length; ++i) along[i] = along[i - 1] + Math.hypot(points[2 * i] - points[2 * i - 2], points[2 * i + 1] - points[2 * i - 1]);
-  return along;
+/// Where rows begin and end along their part, and lie: nodes reach half way to their neighbours, edges from end to end.
+function extents({ space }, { points: all, boundary }, name, points) {
+  const rows = [], half = (list, i, j) => Math.hypot(list[2 * i] - list[2 * j], list[2 * i + 1] - list[2 * j + 1]) / 2;
+  const edges = space === "RT0" && clearanceNodes(all, boundary[name], points);
+  for (let i = 0, at = 0; 2 * i < points.length; ++i) {
+    const own = edges && half(all, ...edges[i]), before = own || (i && half(points, i, i - 1)), behind = own || half(points, i, i + 1) || 0;
+    rows.push({ from: at, at: at + before, to: (at += before + behind) });
+  }
+  return rows;
 }
 
-/// From half way to the row before to half way to the row behind.
-function closedStretches(along, open) {
-  const stretches = [], last = along.length - 1, edge = (i, j) => (j < 0 || j > last ? along[i] : (along[i] + along[j]) / 2);
+function closedStretches(rows, open) {
+  const stretches = [], last = rows.length - 1;
   for (let i = 0; i <= last; ++i) {
     if (open[i]) continue;
     const first = i;
     while (i < last && !open[i + 1]) ++i;
-    stretches.push([edge(first, first - 1), edge(i, i + 1)]);
+    stretches.push([rows[first].from, rows[i].to]);
   }
   return stretches;
 }
 
-export function contactStrips(contact) {
+function contactStrips(contact, { mesh, stress }) {
   return Object.entries(contact).map(([name, { points, clearance, pressure, gap, open }]) => {
-    const along = lengths(points), stretches = closedStretches(along, open), x = { name: "arc length", values: along };
+    const extent = extents(stress, mesh, name, points), along = Float64Array.from(extent, ({ at }) => at), stretches = closedStretches(extent, open), x = { name: "arc length", values: along };
     const rows = Array.from(along, (s, i) => [s, points[2 * i], points[2 * i + 1], clearance[i], pressure[i], gap[i], open[i] ? "open" : "closed"]);
     return [element("h3", {}, name), element("p", { className: "quiet small" }, stretches.length ? `Closed on ${stretches.map(([from, to]) => `${short(from, 3)} … ${short(to, 3)}`).join(", ")} (shaded).` : "Open everywhere."),
       element("div", { className: "beside wide" }, plot({ label: `Pressure along ${name}`, x, y: { name: "pressure", zero: true }, curves: [{ name: "pressure", values: pressure, dots: along.length < 80 }], stretches, high: 210 }),
@@ -69,10 +75,11 @@ export function contactStrips(contact) {
   });
 }
 
-export function contactSection(contact, summary) {
+export function contactSection(result, summary) {
+  const { contact } = result;
   const { force, max_pressure: most, length } = summary.contact;
   return section("contact", "Contact", Object.keys(contact).length
-    ? [element("p", {}, `Force ${short(force, 6)}, largest pressure ${short(most, 6)}, closed on a length of ${short(length, 6)}.`), contactStrips(contact)]
+    ? [element("p", {}, `Force ${short(force, 6)}, largest pressure ${short(most, 6)}, closed on a length of ${short(length, 6)}.`), contactStrips(contact, result)]
     : element("p", {}, "No part of the boundary is a contact."));
 }
 
@@ -84,7 +91,7 @@ export function levelsSection({ levels }, view) {
     const last = levels.level.length - 1, own = view.level ? Math.min(view.level - 1, last) : last;
     const slider = element("input", { type: "range", min: 1, max: last + 1, step: 1, value: own + 1, ariaLabel: "Level" });
     slider.addEventListener("input", () => view.set({ level: slider.valueAsNumber }));
-    const facts = ["triangles", "unknowns", "iterations"].map((name) => `${short(levels[name][own])} ${name}`).join(", ");
+    const facts = ["triangle", "unknown", "iteration"].map((name) => counted(levels[`${name}s`][own], name)).join(", ");
     const focused = body.contains(document.activeElement);
     body.replaceChildren(element("label", {}, "Level ", slider, ` ${own + 1} of ${last + 1}`),
       element("p", {}, `${facts}, bound ${short(levels.bound[own], 4)}, that is ${percent(levels.relative[own])}, after ${seconds(levels.seconds[own])}.`),
@@ -114,7 +121,23 @@ export function studySection({ rows, rates }) {
     numbers("Numbers of the study", table("Study", keys.map(inWords), rows.map((row) => keys.map((key) => row[key] ?? "–")))));
 }
 
-export function sweepSection(sweep, view) {
+/// A problem with what one entry of its sweep changes (RFC 7396).
+function alone({ sweep, title, ...problem }, own) {
+  const patched = (before, patch) => {
+    if (patch?.constructor !== Object) return patch;
+    const made = { ...(before?.constructor === Object && before) };
+    for (const [name, value] of Object.entries(patch)) {
+      if (value === null) delete made[name];
+      else made[name] = patched(made[name], value);
+    }
+    return made;
+  };
+  return { ...patched(problem, sweep[own]), title: [title, sweep[own].title || `entry ${own + 1}`].filter(Boolean).join(": ").slice(0, 200) };
+}
+
+/// `solve(problem)` poses one.
+export function sweepSection(result, view, solve) {
+  const { sweep, problem } = result;
   const body = element("div");
   const name = (entry, i) => entry.title || `entry ${i + 1}`;
   const of = (read) => sweep.map((entry) => (entry.summary ? read(entry.summary) : NaN));
@@ -123,12 +146,16 @@ export function sweepSection(sweep, view) {
   const show = () => {
     const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
     choice.value = own + 1;
+    const button = element("button", { type: "button" }, "Solve it alone");
+    button.addEventListener("click", () => { button.disabled = true; solve(alone(problem, own)); });
     const x = { name: "entry", values: sweep.map((_, i) => i + 1), whole: true }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
     body.replaceChildren(element("div", { className: "beside wide" },
       plot({ label: "Contact force by entry", x, y: { name: "force", zero: true }, curves: [{ name: "contact force", values: of(({ contact }) => contact.force), dots: true }], ...picked }),
       plot({ label: "Largest pressure by entry", x, y: { name: "pressure", zero: true }, curves: [{ name: "largest pressure", values: of(({ contact }) => contact.max_pressure), dots: true }], ...picked }),
       plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),
-      element("h3", {}, name(entry, own)), entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact).flat() : []));
+      element("h3", {}, name(entry, own)),
+      element("p", {}, button, element("span", { className: "quiet small" }, " for its fields and its bound")),
+      entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact, result).flat() : []));
   };
   let shown = view.entry;
   view.onChange(() => { if (view.entry !== shown) { shown = view.entry; show(); } });

@@ -109,7 +109,7 @@ export async function persist(does, lost) {
 
 /// Server-sent events, until the stream says that all is told; after a loss it goes on behind the last event.
 /// (EventSource cannot show a token.) `tell(name, id, data)`; for `lost` see persist().
-export async function follow(path, tell, lost = () => {}) {
+export async function follow(path, tell, lost) {
   for (let last = ""; ; lost(true), await pause(100)) {
     const reply = await persist(() => ask(path, { headers: { Accept: "text/event-stream", ...(last && { "Last-Event-ID": last }) } }), lost);
     if (reply.status === 204) return;

@@ -2,10 +2,7 @@
 
 import { aria, element } from "/pages/element.js";
 
-const isDark = () => {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-};
+const isDark = () => document.documentElement.dataset.theme === "dark";
 
 function themeButton() {
   const button = element("button", { type: "button", className: "last" });
@@ -15,9 +12,9 @@ function themeButton() {
     const theme = isDark() ? "light" : "dark";
     document.documentElement.dataset.theme = theme;
     localStorage.setItem("theme", theme);
-    name();
     dispatchEvent(new Event("themechange"));
   });
+  addEventListener("themechange", name);
   name();
   return button;
 }
@@ -29,7 +26,7 @@ export function shell() {
     const made = element("a", { href: path }, text);
     return here === path ? aria(made, { "aria-current": "page" }) : made;
   };
-  const brand = aria(element("a", { href: "/", className: "brand" }, element("img", { src: "/pages/icon.svg", alt: "" }), "Signorini"), {});
+  const brand = element("a", { href: "/", className: "brand" }, element("img", { src: "/pages/icon.svg", alt: "" }), "Signorini");
   document.body.prepend(
     element("a", { className: "skip", href: "#main" }, "To the content"),
     element("header", {}, aria(element("nav", { className: "top" }, brand, link("/v1/solves", "Solves"), link("/docs", "Interface"), themeButton()), { "aria-label": "Pages" })));

@@ -2,12 +2,12 @@
 
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
-import { bytes, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
+import { bytes, counted, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
 import { Figure } from "/pages/figure.js";
 import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
 import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
-import { ask, follow, getBytes, getJson, persist } from "/pages/service.js";
+import { ask, follow, getBytes, getJson, persist, postJson } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
 
@@ -35,7 +35,7 @@ function showHead(solve) {
       failed(refusal);
     }
   });
-  const facts = summary ? [`${short(summary.triangles)} triangles`, `${short(summary.iterations)} iterations, ${summary.method.replaceAll("_", " ")}`, seconds(summary.timings.total), bytes(summary.peak_memory_bytes)]
+  const facts = summary ? [counted(summary.triangles, "triangle"), `${counted(summary.iterations, "iteration")}, ${summary.method.replaceAll("_", " ")}`, seconds(summary.timings.total), bytes(summary.peak_memory_bytes)]
     : [progress.phase, progress.level && `level ${progress.level.number}`, progress.iteration > 0 && `iteration ${short(progress.iteration)}`, progress.residual > 0 && `residual ${short(progress.residual, 3)}`].filter(Boolean);
   const files = summary ? [["result", "JSON"], ["vtu", "VTU"], ["picture", "Plain picture"], ["contact_csv", "Contact CSV"], ["history_csv", "History CSV"]].map(([key, name]) => fileLink(links[key], name)) : [];
   head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
@@ -57,11 +57,13 @@ function fileLink(href, name) {
 
 // --- the result
 
+const pose = (problem) => postJson("/v1/solves", JSON.stringify(problem)).then(({ links }) => location.assign(links.self), failed);
+
 /// What the picture and the sections show of a solve that has a result.
 async function resultOf(solve, onProgress) {
-  const body = (await getJson(`${solve.links.result}?fields=problem`)).problem.model === "elasticity";
+  const { problem } = await getJson(`${solve.links.result}?fields=problem`), body = problem.model === "elasticity";
   const fields = ["mesh", "displacement", "stress", "error_squares", "contact", "sweep", "study", ...(body ? ["principal", "von_mises"] : [])];
-  return decode(await getBytes(`${solve.links.result}?fields=${fields}`, onProgress));
+  return { ...decode(await getBytes(`${solve.links.result}?fields=${fields}`, onProgress)), problem };
 }
 
 async function showResult(solve) {
@@ -75,8 +77,8 @@ async function showResult(solve) {
   }
   showPictures(results, solves);
   const { summary } = solve;
-  sections.replaceChildren(...[boundSection(summary), contactSection(result.contact, summary), history.whole, summary.levels && levelsSection(summary, view),
-    result.study && studySection(result.study), result.sweep && sweepSection(result.sweep, view), figuresSection(summary)].filter(Boolean));
+  sections.replaceChildren(...[boundSection(summary), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view),
+    result.study && studySection(result.study), result.sweep && sweepSection(result, view, pose), figuresSection(summary)].filter(Boolean));
 }
 
 function showPictures(results, solves) {
@@ -84,7 +86,7 @@ function showPictures(results, solves) {
   if (figures.length > 1) link(figures);
   picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id)),
     element("div", { className: figures.length > 1 ? "two" : "one" }, figures.map((figure, i) => (figures.length > 1 ? element("div", {}, element("h2", {}, i ? element("a", { href: solves[i].links.self }, figure.name) : figure.name), figure.whole) : figure.whole))),
-    element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? "." : ", f for flat."));
+    element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? ". The foundation is dashed." : ", f for flat."));
 }
 
 /// Two figures have one scale, unless one shows their difference.
@@ -126,7 +128,7 @@ async function showEnd(solve) {
   current = solve;
   showHead(solve);
   const { summary } = solve;
-  history.end.textContent = summary ? `It ended as ${summary.outcome.replaceAll("_", " ")} after ${short(summary.iterations)} iterations.` : `It is ${solve.status}.`;
+  history.end.textContent = summary ? `It ended as ${summary.outcome.replaceAll("_", " ")} after ${counted(summary.iterations, "iteration")}.` : `It is ${solve.status}.`;
   if (!summary) return picture.replaceChildren();
   try {
     await showResult(solve);

@@ -1,6 +1,6 @@
 // The solves: what waits, runs and has ended, as it happens.
 
-import { aria, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
+import { aria, boundInWords, counted, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
 import { ask, getJson, Unreached } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
@@ -34,16 +34,15 @@ function progressOf({ status: own, progress, summary, error }) {
   if (error) return error.title;
   if (own === "queued") return "waits for a worker";
   const { phase, iteration, residual, level, sweep, study } = progress;
-  const counted = sweep ?? study;
-  if (own === "running") return [phase, counted && `${counted.done} of ${counted.count}`, level && `level ${level.number}, ${short(level.triangles)} triangles`,
+  const several = sweep ?? study;
+  if (own === "running") return [phase, several && `${several.done} of ${several.count}`, level && `level ${level.number}, ${counted(level.triangles, "triangle")}`,
     iteration > 0 && `iteration ${short(iteration)}`, residual > 0 && `residual ${short(residual, 2)}`].filter(Boolean).join(" · ");
-  return summary ? `${short(summary.triangles)} triangles, ${short(summary.iterations)} iterations` : "";
+  return summary ? `${counted(summary.triangles, "triangle")}, ${counted(summary.iterations, "iteration")}` : "";
 }
 
 function boundOf({ progress, summary }) {
   if (progress.level && !summary) return `${percent(progress.level.relative)} so far`;
-  const bound = summary?.error_bound;
-  return bound ? `${percent(bound.relative)}${bound.guaranteed ? "" : ", not proved"}` : "";
+  return summary ? boundInWords(summary.error_bound) : "";
 }
 
 const clock = new Intl.DateTimeFormat(undefined, { month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });

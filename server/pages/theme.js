@@ -1,5 +1,7 @@
 // Before the page is drawn: the theme that was chosen here, else that of the system.
 {
-  const chosen = localStorage.getItem("theme");
-  if (chosen) document.documentElement.dataset.theme = chosen;
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const show = () => { document.documentElement.dataset.theme = localStorage.getItem("theme") ?? (system.matches ? "dark" : "light"); };
+  system.addEventListener("change", () => { show(); dispatchEvent(new Event("themechange")); });
+  show();
 }

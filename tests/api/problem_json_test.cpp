@@ -41,7 +41,7 @@ TEST(ParseRequest, ReadsThePaper) {
     if (example.name != "paper-nonconforming") continue;
     const Request request = parse_request(example.json);
     const Problem& problem = request.problem;
-    EXPECT_EQ(request.title, "paper, section 6, nonconforming");
+    EXPECT_EQ(request.title, "The paper, section 6, nonconforming");
     EXPECT_EQ(std::get<Rectangle>(problem.domain).origin, Point(0, 0));
     EXPECT_EQ(std::get<Rectangle>(problem.domain).size, Vector(1, 1));
     EXPECT_EQ(std::get<Divisions>(problem.mesh.fineness).x, 12);

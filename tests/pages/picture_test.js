@@ -263,6 +263,20 @@ test("The picture is kept as PNG and SVG", async () => {
   wellDone();
 });
 
+test("The foundation lies beyond an elastic body by its gap, as many times too far as the body is deformed", async () => {
+  await open(solves.body, "lift=3");
+  const [svg] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+  const lines = [...(await readFile(await svg.path(), "utf8")).matchAll(/<path class="f" d="M([^"]*)"/g)].map(([, path]) => path.split("L").map((place) => place.split(" ").map(Number)));
+  const { contact: { bottom } } = await result(solves.body, "contact");
+  assert.deepEqual(lines.map((line) => line.length), [bottom.points.length]);
+  // The bottom is straight and level: what is across tells how large the picture is.
+  const [first, last] = [0, -1].map((i) => ({ seen: lines[0].at(i), place: bottom.points.at(i), gap: bottom.gap.at(i) }));
+  const scale = (last.seen[0] - first.seen[0]) / (last.place[0] - first.place[0]);
+  assert.ok(Math.abs((last.seen[1] - first.seen[1]) / scale - 3 * (last.gap - first.gap)) < 1e-3);
+  assert.ok(Math.abs(last.gap - first.gap) > 0.03);
+  wellDone();
+});
+
 test("Two solves are side by side with one view and one scale, and their difference is shown", async () => {
   await open(solves.body, `with=${solves.other}&field=displacement_y`);
   await page.waitForFunction(() => document.querySelectorAll("figure .ticks li").length === 10);
@@ -305,9 +319,17 @@ test("Below it stand the bound in words, contact, sweep, levels and study, and t
   assert.equal(await page.locator("#contact tbody tr").count(), bottom.pressure.length);
   const id = await service.solve(await service.example("gap-sweep"));
   await open(id);
+  // Of whole edges, whose middles the rows are.
+  await page.locator("#contact").getByText("Closed on 0 … 2 (shaded).").waitFor();
   await page.getByLabel("Entry", { exact: true }).last().selectOption("3");
   await page.locator("#sweep h3").first().getByText("tilted", { exact: true }).waitFor();
   await page.waitForFunction(() => location.hash.includes("entry=3"));
+  await page.getByLabel("Entry", { exact: true }).last().selectOption("4");
+  await page.getByRole("button", { name: "Solve it alone" }).click();
+  await page.waitForURL((url) => !url.pathname.endsWith(id));
+  const twice = (await result(new URL(page.url()).pathname.split("/").at(-1), "problem")).problem, sweep = await service.example("gap-sweep");
+  assert.deepEqual([twice.sweep, twice.boundary, twice.mesh], [undefined, { ...sweep.boundary, bottom: { type: "contact", gap: "0.01 * x" }, top: { type: "traction", pressure: 2 } }, sweep.mesh]);
+  await drawn(page);
   const adaptive = await service.solve(await service.example("adaptive-mesh"));
   await open(adaptive);
   await page.getByLabel("Level", { exact: true }).fill("2");

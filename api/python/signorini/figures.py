@@ -53,7 +53,7 @@ class Experiment:
     def problem(self) -> Problem:
         """The membrane of section 6."""
         return Problem(
-            title=f"paper, section 6, {self.scheme}",
+            title=f"The paper, section 6, {self.scheme}",
             model="membrane",
             domain=Rectangle((0, 0), (1, 1)),
             mesh=MeshRequest(divisions=(self.divisions, self.divisions), pattern="right"),
@@ -162,7 +162,7 @@ def draw_solution(result: Result, experiment: Experiment) -> Any:
     figure = package("matplotlib.pyplot", "figures").figure(figsize=(11, 4.8))
     figure.suptitle(
         f"{experiment.scheme}, {experiment.divisions}×{experiment.divisions}, ρ = {experiment.rho:g}, "
-        f"{result.summary.iterations} iterations"
+        f"{result.summary.iterations} iteration{'' if result.summary.iterations == 1 else 's'}"
     )
     _draw_surface(figure.add_subplot(1, 2, 1, projection="3d"), result)
     _draw_along_contact(figure.add_subplot(1, 2, 2), result)
