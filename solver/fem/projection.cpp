@@ -149,7 +149,8 @@ class Sampler {
         [&](const Corners& cell, double share) { return add_smooth(cell, share); });
   }
 
-  const Samples& samples() const { return samples_; }
+  /// Of a function that has no bound somewhere nothing is known but its values.
+  const Samples& samples() const { return values_.is_finite ? samples_ : values_; }
 
  private:
   using Corners = std::array<Point, 3>;
@@ -168,7 +169,7 @@ class Sampler {
     // Most cells lie on curves: there its derivatives are not known, nor worth their work.
     bool is_undecided = false;
     const Interval values = range(series_on_triangle(formula, place, 0, is_undecided));
-    samples_.jumps = samples_.jumps || is_undecided;
+    samples_.jumps = values_.jumps = samples_.jumps || is_undecided;
     if (is_undecided || !is_known(values)) return false;
     const Series series = series_on_triangle(formula, place, Series::kMost, is_undecided);
     const auto r = [&](int k) { return largest(series[k]); };
@@ -184,21 +185,41 @@ class Sampler {
     return false;
   }
 
+  /// By its model m, which f is off from by at most the remainder ρ. Where that is so large that m tells
+  /// little of f, as beside a quotient of what vanishes, f counts by its values in the points, which are
+  /// within ρ of m: then the sums are off by at most 2 ρ.
   void add_piece(const TrianglePiece& piece) {
-    const double remainder = piece.models[0].remainder();
-    samples_.is_finite = samples_.is_finite && std::isfinite(remainder);
-    if (!samples_.is_finite) return;
-    for (const auto& [point, weight] : rule_of_degree(8))
-      samples_.add(piece(point), piece.share * weight, piece.models[0].at(point.x(), point.y()));
-    samples_.force += piece.share / 2 * remainder;
-    samples_.work += piece.share / 2 * remainder;
-    samples_.value_square += piece.share / 2 * remainder * remainder;
+    const TaylorModel& model = piece.models[0];
+    const auto& rule = rule_of_degree(8);
+    std::vector<double> values;
+    double largest = 0;
+    for (const auto& [point, weight] : rule) {
+      const double value = field_(map_(piece(point)));
+      values.push_back(std::isfinite(value) ? value : 0);
+      largest = std::max(largest, std::abs(values.back()));
+      values_.add(piece(point), piece.share * weight, values.back());
+    }
+    values_.is_finite = values_.is_finite && std::isfinite(model.remainder());
+    if (!values_.is_finite) return;
+    constexpr double little_known = 4;
+    const bool by_values = model.remainder() > little_known * largest;
+    for (std::size_t q = 0; q < rule.size(); ++q) {
+      const auto& [point, weight] = rule[q];
+      const double value = by_values ? values[q] : model.at(point.x(), point.y());
+      samples_.add(piece(point), piece.share * weight, value);
+    }
+    const double off = (by_values ? 2 : 1) * model.remainder();
+    samples_.force += piece.share / 2 * off;
+    samples_.work += piece.share / 2 * off;
+    samples_.value_square += piece.share / 2 * off * off;
   }
 
   void add(const Corners& cell, double share, int degree) {
     for (const auto& [point, weight] : rule_of_degree(degree)) {
       const Point own = cell[0] + point.x() * (cell[1] - cell[0]) + point.y() * (cell[2] - cell[0]);
-      samples_.add(own, share * weight, field_(map_(own)));
+      const double value = field_(map_(own));
+      samples_.add(own, share * weight, value);
+      values_.add(own, share * weight, value);
     }
   }
 
@@ -208,6 +229,7 @@ class Sampler {
   const CellBudget& budget_;
   const int patient_until_;  ///< while the budget has more than so many cells the tolerance is the fine one
   Samples samples_;
+  Samples values_;  ///< of the values of f alone, which say nothing of what lies between the points
 };
 
 /// The value of a function that has one on the whole triangle, as beside a jump: most loads do not vary else.

@@ -43,5 +43,31 @@ TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
   }
 }
 
+/// Beside what a quotient divides by, its enclosure is without bound, or as good as that, and its values are
+/// not.
+TEST(LoadProjection, HasTheValuesOfAQuotientOfWhatVanishes) {
+  const auto expect = [](const std::string& load, double exact, double tolerance) {
+    for (const int n : {4, 16}) {
+      SCOPED_TRACE(load + " on " + std::to_string(n) + " squares");
+      Problem problem = problems::paper(Scheme::conforming, n);
+      problem.body = problems::formula(load);
+      const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
+      const LoadProjection loads(problem, mesh);
+      EXPECT_NEAR(integral(loads, mesh), exact, tolerance);
+      if (!loads.unmet().empty()) continue;
+      double uncertain = 0;
+      for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) uncertain += loads[t].uncertain_force;
+      EXPECT_NEAR(integral(loads, mesh), exact, uncertain);
+    }
+  };
+  const double sine = 0.979726;  // ∫ sin(x - 0.3) / (x - 0.3)
+  expect("sin(x - 0.3) / (x - 0.3)", sine, 1e-5);
+  expect("abs(x - 0.3) < 1e-12 ? 1 : sin(x - 0.3) / (x - 0.3)", sine, 1e-3);
+  expect("abs(x - 0.25) < 1e-12 ? 1 : sin(x - 0.25) / (x - 0.25)", 0.976088, 1e-3);
+  expect("(x^2 - 0.09) / (x - 0.3)", 0.8, 1e-9);
+  expect("abs(x - 0.3) < 1e-7 ? 0.6 : (x^2 - 0.09) / (x - 0.3)", 0.8, 1e-4);
+  expect("x * log(x)", -0.25, 1e-4);
+}
+
 }  // namespace
 }  // namespace signorini::load_projection_test
