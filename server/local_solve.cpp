@@ -21,7 +21,8 @@ void ask_to_stop(int) {
   stop_asked = 1;
 }
 
-/// Shows how far the solve is, adds its levels to a series if there is one, and ends it on Ctrl-C.
+/// Shows how far the solve is, adds its levels and entries to a series if there is one, and ends it on
+/// Ctrl-C.
 class LocalObserver : public Observer {
  public:
   LocalObserver(std::int64_t triangles, Series* series) : progress_(triangles), series_(series) {
@@ -35,6 +36,10 @@ class LocalObserver : public Observer {
     progress_.refined(level);
     if (series_ != nullptr) series_->add_level(level, solution);
   }
+  bool sees_entries() const override { return series_ != nullptr; }
+  void entry(std::size_t number, const Solution& solution) override {
+    series_->add_entry(number + 1, solution);
+  }
   void swept(std::size_t done, std::size_t count) override { progress_.done("entry", done, count); }
   void studied(std::size_t done, std::size_t count) override { progress_.done("run", done, count); }
   bool keep_going() override {
@@ -47,13 +52,13 @@ class LocalObserver : public Observer {
   Series* const series_;
 };
 
-/// Solves the problem, and what its series has beyond it.
+/// Solves the problem and completes its series.
 Ending solved(const api::Request& request, Series* series) {
   LocalObserver observer(estimate(request.problem).triangles, series);
   KeptOperators not_kept(0);
   Ending ending = ending_of(solve_request(request, observer, not_kept));
   if (series == nullptr) return ending;
-  if (!request.problem.mesh.adaptive) series->add_sweep(request, *ending.solution, observer);
+  if (!request.problem.mesh.adaptive) series->add_entry(0, *ending.solution);
   series->finish();
   return ending;
 }

@@ -1,5 +1,6 @@
 #include "server/series.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -7,27 +8,9 @@
 
 #include "api/result/vtu.hpp"
 #include "server/local_solve.hpp"
-#include "solve.hpp"
 
 namespace signorini::server {
 namespace {
-
-/// Keeps the operator that was made last: entries of one material follow each other.
-class LastOperator : public OperatorCache {
- public:
-  std::shared_ptr<const Operator> find(const std::string& key) override {
-    if (key != key_) operator_.reset();
-    return operator_;
-  }
-  void keep(const std::string& key, std::shared_ptr<const Operator> made) override {
-    key_ = key;
-    operator_ = std::move(made);
-  }
-
- private:
-  std::string key_;
-  std::shared_ptr<const Operator> operator_;
-};
 
 template <typename Write>
 void write_file(const std::string& path, const Write& write) {
@@ -59,24 +42,8 @@ void Series::add_level(const Level& level, const Solution& solution) {
   add(level.number, numbered("level", static_cast<std::size_t>(level.number)), solution);
 }
 
-void Series::add_sweep(const api::Request& request, const Solution& solution, Observer& observer) {
-  add(0, numbered("entry", 0), solution);
-  LastOperator last;
-  SilentObserver within(observer);
-  Problem varied = request.problem;
-  for (std::size_t i = 0; i < request.sweep.size(); ++i) {
-    const Variation& variation = request.sweep[i];
-    apply(variation, request.problem, varied);
-    varied.operator_key = variation.material_key + '\n' + request.problem.operator_key;
-    try {
-      add(static_cast<double>(i + 1), numbered("entry", i + 1),
-          solve(varied, request.settings, within, last));
-    } catch (const SolveError&) {
-      // The result says why it has none.
-    } catch (const InvalidProblem&) {
-      // Likewise.
-    }
-  }
+void Series::add_entry(std::size_t number, const Solution& solution) {
+  add(static_cast<double>(number), numbered("entry", number), solution);
 }
 
 void Series::add(double time, const std::string& name, const Solution& solution) {
@@ -84,7 +51,8 @@ void Series::add(double time, const std::string& name, const Solution& solution)
   files_.push_back({time, name});
 }
 
-void Series::finish() const {
+void Series::finish() {
+  std::ranges::sort(files_, {}, &api::SeriesFile::time);
   write_file(directory_ + "/series.pvd", [&](const api::Sink& sink) { return api::write_pvd(files_, sink); });
 }
 

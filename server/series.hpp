@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "api/problem/problem_json.hpp"
 #include "api/result/pvd.hpp"
 #include "progress/observer.hpp"
 #include "result/solution.hpp"
@@ -19,12 +18,11 @@ class Series {
 
   void add_level(const Level& level, const Solution& solution);
 
-  /// The problem itself and each entry of its sweep, which is solved once more for its fields; one that has
-  /// no solution is left out. Throws Cancelled.
-  void add_sweep(const api::Request& request, const Solution& solution, Observer& observer);
+  /// The problem itself has the number 0.
+  void add_entry(std::size_t number, const Solution& solution);
 
   /// Writes what makes the files a series. Throws BadInput.
-  void finish() const;
+  void finish();
 
  private:
   void add(double time, const std::string& name, const Solution& solution);

@@ -19,16 +19,19 @@ std::string in_words(const NotPositiveDefinite& failure) {
          "material and its units, and the sizes of the domain";
 }
 
-/// Adds an entry for each variation; `solve_one(variation, progress)` finds it.
+/// Adds an entry for each variation; `solve_one(variation, progress, show)` finds it.
 template <typename SolveOne>
 void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, Observer& observer,
                 const Progress& whole, Solution& solution, const SolveOne& solve_one) {
   SilentObserver within(observer);
+  ShowSolution show;
+  if (observer.sees_entries())
+    show = [&](const Solution& own) { observer.entry(solution.sweep.size(), own); };
   for (const Variation& variation : sweep) {
     Progress progress(within, settings.time_limit, settings.spent + whole.seconds());
     SweepEntry entry;
     try {
-      entry = solve_one(variation, progress);
+      entry = solve_one(variation, progress, show);
     } catch (const SolveError& failure) {
       entry.error = failure.what();
     } catch (const NotPositiveDefinite& failure) {
@@ -63,7 +66,9 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   if (sweep.empty()) return solution;
   Sweep entries(problem, std::move(used), settings);
   sweep_over(sweep, settings, observer, progress, solution,
-             [&](const Variation& variation, Progress& own) { return entries.solve(variation, own); });
+             [&](const Variation& variation, Progress& own, const ShowSolution& show) {
+               return entries.solve(variation, own, show);
+             });
   return solution;
 }
 
@@ -75,10 +80,14 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
     return solve_condensed(problem, sweep, settings, observer, cache, progress);
   Solution solution = solve_paper_form(problem, settings, progress);
   Problem varied = problem;
-  sweep_over(sweep, settings, observer, progress, solution, [&](const Variation& variation, Progress& own) {
-    apply(variation, problem, varied);
-    return entry_of(iterate_paper_form(varied, settings, own));
-  });
+  sweep_over(sweep, settings, observer, progress, solution,
+             [&](const Variation& variation, Progress& own, const ShowSolution& show) {
+               apply(variation, problem, varied);
+               if (!show) return entry_of(iterate_paper_form(varied, settings, own));
+               Solution shown = solve_paper_form(varied, settings, own);
+               show(shown);
+               return entry_of(std::move(shown));
+             });
   return solution;
 }
 

@@ -21,6 +21,7 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   if (fields.von_mises) write_von_mises(out.key("von_mises"), solution);
   if (fields.error_squares && solution.error_squares.size() > 0)
     write_error_squares(out.key("error_squares"), solution);
+  if (fields.levels && !solution.levels.empty()) write_level_fields(out.key("levels"), solution.levels);
   if (fields.contact) write_contact(out.key("contact"), solution.contact);
   if (fields.history) write_history(out.key("history"), solution.history);
   if (fields.sweep && !solution.sweep.empty()) write_sweep(out.key("sweep"), solution.sweep, fields.contact);

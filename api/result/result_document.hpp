@@ -21,6 +21,7 @@ struct ResultFields {
   bool principal = false;
   bool von_mises = false;
   bool error_squares = false;  ///< only by name, if there is an error bound
+  bool levels = false;         ///< only by name, if the mesh refined itself
 
   /// Reads a comma separated list such as `summary,contact`; an empty list is the default set. Throws
   /// InvalidProblem (with the pointer `/fields`) for a name that is unknown, and names those that are known.

@@ -19,7 +19,8 @@ const Names<bool ResultFields::*> field_names{{"summary", nullptr},
                                               {"study", &ResultFields::study},
                                               {"principal", &ResultFields::principal},
                                               {"von_mises", &ResultFields::von_mises},
-                                              {"error_squares", &ResultFields::error_squares}};
+                                              {"error_squares", &ResultFields::error_squares},
+                                              {"levels", &ResultFields::levels}};
 
 void pick(ResultFields& fields, std::string_view name) {
   const auto entry = std::ranges::find(field_names, name, &Named<bool ResultFields::*>::name);

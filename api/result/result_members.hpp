@@ -19,6 +19,8 @@ void write_principal(DocumentWriter& out, const Solution& solution);
 void write_von_mises(DocumentWriter& out, const Solution& solution);
 /// What each triangle adds to the square of the error bound.
 void write_error_squares(DocumentWriter& out, const Solution& solution);
+/// What is seen of the levels of a mesh that refined itself.
+void write_level_fields(DocumentWriter& out, const std::vector<LevelFields>& levels);
 void write_contact(DocumentWriter& out, const std::vector<ContactPart>& parts);
 /// `with_contact`: clearances and pressures of every entry too.
 void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact);

@@ -91,16 +91,17 @@ void put_levels(PieceWriter& out, const std::vector<Level>& levels) {
 
 void put_sweep(PieceWriter& out, const std::vector<SweepEntry>& sweep) {
   if (sweep.empty()) return;
-  std::vector<Row> rows{{"entry", "energy", "force", "pressure", "length", "seconds", ""}};
+  std::vector<Row> rows{{"entry", "energy", "bound", "force", "pressure", "length", "seconds", ""}};
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     const SweepEntry& entry = sweep[i];
     const std::string name = std::to_string(i) + (entry.title.empty() ? "" : " " + plain(entry.title));
     if (!entry.error.empty()) {
-      rows.push_back({name, "", "", "", "", shown(entry.seconds, 3), plain(entry.error)});
+      rows.push_back({name, "", "", "", "", "", shown(entry.seconds, 3), plain(entry.error)});
       continue;
     }
-    rows.push_back({name, shown(entry.energy), shown(entry.sums.force), shown(entry.sums.max_pressure),
-                    shown(entry.sums.length), shown(entry.seconds, 3), plain(entry.advice)});
+    rows.push_back({name, shown(entry.energy), entry.error_bound ? percent(entry.error_bound->relative) : "",
+                    shown(entry.sums.force), shown(entry.sums.max_pressure), shown(entry.sums.length),
+                    shown(entry.seconds, 3), plain(entry.advice)});
   }
   out.put("\n");
   put_table(out, rows);

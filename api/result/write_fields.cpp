@@ -33,6 +33,14 @@ void write_points(DocumentWriter& out, const std::vector<Point>& points) {
   out.rows({points.size(), 2}, [&](std::size_t i) { return points[i]; });
 }
 
+void write_triangles(DocumentWriter& out, const std::vector<std::array<int, 3>>& triangles) {
+  out.rows({triangles.size(), 3}, [&](std::size_t t) { return triangles[t]; });
+}
+
+void write_shares(DocumentWriter& out, const Eigen::VectorXd& squares) {
+  out.rows({static_cast<std::size_t>(squares.size())}, [&](std::size_t t) { return squares[t]; });
+}
+
 void write_column(DocumentWriter& out, const std::vector<double>& column) {
   out.numbers({column.size()}, std::span(column));
 }
@@ -42,7 +50,7 @@ void write_column(DocumentWriter& out, const std::vector<double>& column) {
 void write_mesh(DocumentWriter& out, const Mesh& mesh) {
   out.begin_object();
   write_points(out.key("points"), mesh.points);
-  out.key("triangles").rows({mesh.triangles.size(), 3}, [&](std::size_t t) { return mesh.triangles[t]; });
+  write_triangles(out.key("triangles"), mesh.triangles);
   out.key("boundary").begin_object();
   for (const BoundaryPart& part : mesh.boundary) {
     out.key(part.name).rows({part.edges.size(), 2}, [&](std::size_t i) {
@@ -50,6 +58,22 @@ void write_mesh(DocumentWriter& out, const Mesh& mesh) {
     });
   }
   out.end_object().end_object();
+}
+
+void write_level_fields(DocumentWriter& out, const std::vector<LevelFields>& levels) {
+  out.begin_array();
+  for (const LevelFields& level : levels) {
+    const auto& [number, points, triangles, displacement_at_points, error_squares] = level;
+    out.begin_object().member("level", number);
+    write_points(out.key("points"), points);
+    write_triangles(out.key("triangles"), triangles);
+    const int d = static_cast<int>(displacement_at_points.rows());
+    out.key("displacement_at_points")
+        .numbers(with_components({points.size()}, d), all_of(displacement_at_points));
+    write_shares(out.key("error_squares"), error_squares);
+    out.end_object();
+  }
+  out.end_array();
 }
 
 void write_displacement(DocumentWriter& out, const Solution& solution) {
@@ -83,8 +107,7 @@ void write_von_mises(DocumentWriter& out, const Solution& solution) {
 }
 
 void write_error_squares(DocumentWriter& out, const Solution& solution) {
-  const Eigen::VectorXd& squares = solution.error_squares;
-  out.rows({static_cast<std::size_t>(squares.size())}, [&](std::size_t t) { return squares[t]; });
+  write_shares(out, solution.error_squares);
 }
 
 void write_contact(DocumentWriter& out, const std::vector<ContactPart>& parts) {

@@ -106,6 +106,7 @@ void write_entry_summary(DocumentWriter& out, const SweepEntry& entry) {
       .end_object();
   write_contact_sums(out.key("contact"), entry.sums);
   write_reactions(out.key("parts"), entry.parts);
+  if (entry.error_bound) write_error_bound(out.key("error_bound"), *entry.error_bound);
   out.member("seconds", entry.seconds).end_object();
 }
 

@@ -34,6 +34,9 @@ std::size_t memory_of(const Solution& solution) {
     bytes += sizeof(SweepEntry) + memory_of(entry.parts);
     for (const ContactPart& part : entry.contact) bytes += memory_of(part);
   }
+  for (const LevelFields& level : solution.levels)
+    bytes += sizeof(LevelFields) + memory_of(level.points) + memory_of(level.triangles) +
+             memory_of(level.displacement_at_points) + memory_of(level.error_squares);
   return bytes + memory_of(solution.study);
 }
 

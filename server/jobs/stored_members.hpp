@@ -143,10 +143,11 @@ void serialize(Archive& archive, Summary& summary, std::uint32_t version) {
   if (version >= 3) archive(notes);
 }
 
+/// The bound came later and ends the list of a solution.
 template <class Archive>
 void serialize(Archive& archive, SweepEntry& entry) {
   auto& [title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
-         parts, seconds, contact] = entry;
+         parts, seconds, contact, error_bound] = entry;
   archive(title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
           parts, seconds, contact);
 }
@@ -165,10 +166,16 @@ void serialize(Archive& archive, StudyRow& row) {
 }
 
 template <class Archive>
+void serialize(Archive& archive, LevelFields& level) {
+  auto& [number, points, triangles, displacement_at_points, error_squares] = level;
+  archive(number, points, triangles, displacement_at_points, error_squares);
+}
+
+template <class Archive>
 void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
   auto& [summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
          stress_at_centroids, out_of_plane_stress, error_squares, admissible_pressure, contact, history,
-         sweep, study] = solution;
+         sweep, study, levels] = solution;
   archive(summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
           stress_at_centroids, out_of_plane_stress, contact, history);
   if (version >= 1) archive(sweep);
@@ -178,6 +185,13 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
   if (version >= 4) archive(mesh.circles, mesh.edge_circles, mesh.notes, error_squares, admissible_pressure);
   if (version >= 5)
     for (EdgePressure& own : admissible_pressure) archive(own.begin, own.end);
+  if (version >= 6) {
+    for (SweepEntry& entry : sweep) {
+      archive(entry.error_bound);
+      serialize_asymmetry(archive, entry.error_bound);
+    }
+    archive(levels);
+  }
 }
 
 }  // namespace signorini
@@ -205,4 +219,4 @@ void serialize(Archive& archive, Verdict& verdict) {
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
 CEREAL_CLASS_VERSION(signorini::Summary, 3)
-CEREAL_CLASS_VERSION(signorini::Solution, 5)
+CEREAL_CLASS_VERSION(signorini::Solution, 6)

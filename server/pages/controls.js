@@ -3,8 +3,8 @@
 import { aria, element, save, short } from "/pages/element.js";
 import { mostTriangles, svgOf } from "/pages/vector.js";
 
-/// `figures`: one, or two that are linked.
-export function controlsOf(figures, view, names) {
+/// `figures`: one, or two that are linked; `steps`: null, or the levels to step through.
+export function controlsOf(figures, view, names, steps) {
   const [figure] = figures;
   const field = element("select", {}, [...figure.fields.values()].map(({ key, name }) => element("option", { value: key }, name)));
   field.addEventListener("change", () => view.set({ field: field.value, fixed: false, low: null, high: null }));
@@ -40,11 +40,15 @@ export function controlsOf(figures, view, names) {
     setTimeout(() => { link.textContent = "Copy link"; }, 1500);
   });
 
+  const level = element("input", { type: "range", min: 1, max: steps?.count, step: 1, ariaLabel: "Level" }), told = element("span");
+  level.addEventListener("input", () => view.set({ level: level.valueAsNumber }));
+
   const show = () => {
     field.value = figure.field.key;
     for (const { name, button: own } of toggles) own.setAttribute("aria-pressed", String(Boolean(state(name))));
     if (document.activeElement !== exact) exact.value = figure.lift;
     if (document.activeElement !== slider) slider.value = Math.min(1, Math.sqrt(figure.lift / (4 * figure.usualLift)));
+    if (steps) told.textContent = `${(level.value = steps.shown())} of ${steps.count}`;
     lift.hidden = !figure.body && !figure.surface;
     fixed.checked = view.fixed;
     if (figure.scale) for (const [name, input] of [["low", low], ["high", high]]) if (document.activeElement !== input) input.value = Number((view.fixed ? view[name] : figure.scale[name]).toPrecision(6));
@@ -52,7 +56,7 @@ export function controlsOf(figures, view, names) {
   figure.onDrawn = show;
   show();
   return aria(element("div", { className: "controls" },
-    element("div", { className: "row" }, element("label", {}, "Field", field), toggles.map(({ button: own }) => own)),
+    element("div", { className: "row" }, element("label", {}, "Field", field), steps && element("label", {}, "Level", level, told), toggles.map(({ button: own }) => own)),
     element("div", { className: "row" }, lift, element("label", {}, "Scale", low, "to", high), element("label", {}, fixed, "Fixed"),
       element("span", { className: "row last" }, button("Whole view", () => view.reset()), button("PNG", () => each(async (own, name) => save(`${name}.png`, await own.png()))), svg, link))), { role: "group", "aria-label": "What the picture shows" });
 }

@@ -100,12 +100,27 @@ export class Drawing {
     const { gl } = this;
     this.shown = program(gl, coloured);
     this.numbers = program(gl, numbered);
-    const arrays = (coarse) => ({ coarse, array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()) });
-    this.whole = arrays(null);
-    this.rough = this.coarse && arrays(this.coarse);
+    this.makeArrays();
     this.texture = gl.createTexture();
     this.target = null;
     gl.enable(gl.DEPTH_TEST);
+  }
+
+  makeArrays() {
+    const { gl } = this;
+    const arrays = (coarse) => ({ coarse, array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()) });
+    this.whole = arrays(null);
+    this.rough = this.coarse && arrays(this.coarse);
+  }
+
+  /// Triangles of another mesh will be set.
+  change(coarse) {
+    for (const { array, buffers } of [this.whole, this.rough].filter(Boolean)) {
+      this.gl.deleteVertexArray(array);
+      buffers.forEach((own) => this.gl.deleteBuffer(own));
+    }
+    this.coarse = coarse;
+    this.makeArrays();
   }
 
   /// So many numbers a corner; `of`: "own" or "at", by which corner of the whole those of the coarse one go.

@@ -2,7 +2,7 @@
 
 /// Fields by key: `name`, `corners` (1 or 3 numbers a triangle), `values()`, and `atPoints()`, the same without jumps.
 export function fieldsOf(result) {
-  const { mesh, displacement, stress, principal, von_mises: vonMises, error_squares: squares } = result;
+  const { mesh, displacement, stress = {}, principal, von_mises: vonMises, error_squares: squares } = result;
   const count = mesh.triangles.length / 3, fields = new Map();
   const areas = once(() => areasOf(mesh));
   const add = (key, name, corners, values, atPoints) => {
@@ -11,19 +11,18 @@ export function fieldsOf(result) {
   };
   const made = (length, entry) => () => Float64Array.from({ length }, (_, i) => entry(i));
   const components = isBody(result) ? 2 : 1, corners = displacement.values.length / components / count;
-  const u = displacement.values, points = displacement.at_points;
+  const u = displacement.values, points = displacement.at_points, q = stress.at_centroids;
   if (components === 1) {
     add("displacement", "displacement u", corners, () => u, () => points);
-    const q = stress.at_centroids;
-    add("stress", "size of the stress |σ|", 1, made(count, (t) => Math.hypot(q[2 * t], q[2 * t + 1])));
-    ["x", "y"].forEach((axis, c) => add(`stress_${axis}`, `stress σ${axis}`, 1, made(count, (t) => q[2 * t + c])));
+    if (q) add("stress", "size of the stress |σ|", 1, made(count, (t) => Math.hypot(q[2 * t], q[2 * t + 1])));
+    if (q) ["x", "y"].forEach((axis, c) => add(`stress_${axis}`, `stress σ${axis}`, 1, made(count, (t) => q[2 * t + c])));
   } else {
-    add("von_mises", "von Mises stress", 1, () => vonMises);
+    if (q) add("von_mises", "von Mises stress", 1, () => vonMises);
     const size = (list) => (i) => Math.hypot(list[2 * i], list[2 * i + 1]);
     add("displacement", "size of the displacement |u|", corners, made(u.length / 2, size(u)), made(points.length / 2, size(points)));
     ["x", "y"].forEach((axis, c) => add(`displacement_${axis}`, `displacement u${axis}`, corners, made(u.length / 2, (i) => u[2 * i + c]), made(points.length / 2, (i) => points[2 * i + c])));
-    ["xx", "yy", "xy"].forEach((axes, c) => add(`stress_${axes}`, `stress σ${axes}`, 1, made(count, (t) => stress.at_centroids[3 * t + c])));
-    ["first", "second"].forEach((which, c) => add(`principal_${which}`, `principal stress σ${"₁₂"[c]}`, 1, made(count, (t) => principal[2 * t + c])));
+    if (q) ["xx", "yy", "xy"].forEach((axes, c) => add(`stress_${axes}`, `stress σ${axes}`, 1, made(count, (t) => q[3 * t + c])));
+    if (q) ["first", "second"].forEach((which, c) => add(`principal_${which}`, `principal stress σ${"₁₂"[c]}`, 1, made(count, (t) => principal[2 * t + c])));
   }
   if (squares) {
     add("error", "share of the error bound", 1, made(count, (t) => Math.sqrt(Math.max(0, squares[t]))));
@@ -32,7 +31,14 @@ export function fieldsOf(result) {
   return fields;
 }
 
-export const isBody = ({ stress }) => stress.at_centroids.shape[1] === 3;
+export const isBody = ({ mesh, displacement }) => displacement.at_points.length === mesh.points.length;
+
+/// A level of the mesh as a result, one without stress.
+export function resultOnLevel({ points, triangles, displacement_at_points: moved, error_squares }) {
+  const components = (2 * moved.length) / points.length;
+  const values = Float64Array.from({ length: components * triangles.length }, (_, i) => moved[components * triangles[Math.floor(i / components)] + (i % components)]);
+  return { mesh: { points, triangles, boundary: {} }, displacement: { at_points: moved, values }, error_squares };
+}
 
 /// What is computed when it is first asked for.
 function once(make) {

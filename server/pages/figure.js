@@ -22,7 +22,7 @@ function stroke(pen, colour, width) {
 
 export class Figure {
   constructor(result, view, name) {
-    Object.assign(this, { result, view, name, fields: fieldsOf(result), body: isBody(result), drawn: {}, picked: -1, scheduled: false });
+    Object.assign(this, { view, name, body: isBody(result), scheduled: false });
     this.canvas = element("canvas");
     this.over = element("canvas");
     this.frame = aria(element("div", { className: "frame", tabIndex: 0 }, this.canvas, this.over), { role: "application", "aria-roledescription": "picture", "aria-label": name });
@@ -31,10 +31,9 @@ export class Figure {
     this.readout = aria(element("output", { className: "readout" }), { "aria-live": "off" });
     this.title = element("p", { className: "field" });
     this.whole = element("figure", { className: "figure" }, element("figcaption", {}, this.title), element("div", { className: "drawn" }, this.frame, element("div", { className: "scale" }, this.scaleBar, this.ticks)), this.readout);
-    this.measure();
+    this.take(result);
     try {
-      const moved = this.count > mostMoved ? coarse(result.mesh, this.middle, this.unit) : null;
-      this.drawing = new Drawing(this.canvas, this.count, moved, () => { this.drawn = {}; this.schedule(); });
+      this.drawing = new Drawing(this.canvas, this.count, this.rough(), () => { this.drawn = {}; this.schedule(); });
     } catch (error) {
       this.frame.replaceChildren(element("p", { className: "notice bad" }, error.message));
     }
@@ -44,6 +43,20 @@ export class Figure {
     new ResizeObserver(() => this.schedule()).observe(this.frame);
   }
 
+  take(result) {
+    Object.assign(this, { result, fields: fieldsOf(result), drawn: {}, nodes: null, lines: null, picked: -1 });
+    this.measure();
+  }
+  rough() {
+    return this.count > mostMoved ? coarse(this.result.mesh, this.middle, this.unit) : null;
+  }
+  /// From now on another result of the same body, on another mesh.
+  show(result) {
+    if (result === this.result) return;
+    this.take(result);
+    this.drawing?.change(this.rough());
+    this.schedule();
+  }
 
   get surface() {
     return !this.body && (this.view.surface ?? true);
@@ -247,8 +260,8 @@ export class Figure {
       stroke(pen, style.getPropertyValue("--ink"), 1.6);
       pen.setLineDash([]);
     }
-    if (view.nodes) this.drawNodes(pen, style);
-    if (view.crosses && this.body) this.drawCrosses(pen, style);
+    if (view.nodes && this.result.stress) this.drawNodes(pen, style);
+    if (view.crosses && this.result.principal) this.drawCrosses(pen, style);
     if (this.picked >= 0) {
       pen.beginPath();
       for (let k = 0; k < 3; ++k) pen[k ? "lineTo" : "moveTo"](...this.corner(3 * this.picked + k));

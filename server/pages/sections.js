@@ -1,6 +1,6 @@
 // What stands below the picture of a solve, a section each.
 
-import { counted, element, percent, seconds, short, table } from "/pages/element.js";
+import { boundInWords, counted, element, percent, seconds, short, table } from "/pages/element.js";
 import { clearanceNodes } from "/pages/nodes.js";
 import { plot } from "/pages/plot.js";
 
@@ -85,18 +85,13 @@ export function contactSection(result, summary) {
 
 // --- levels, study, sweep
 
-export function levelsSection({ levels }, view) {
+export function levelsSection({ levels }, view, steps) {
   const body = element("div");
   const show = () => {
-    const last = levels.level.length - 1, own = view.level ? Math.min(view.level - 1, last) : last;
-    const slider = element("input", { type: "range", min: 1, max: last + 1, step: 1, value: own + 1, ariaLabel: "Level" });
-    slider.addEventListener("input", () => view.set({ level: slider.valueAsNumber }));
+    const own = steps.shown() - 1;
     const facts = ["triangle", "unknown", "iteration"].map((name) => counted(levels[`${name}s`][own], name)).join(", ");
-    const focused = body.contains(document.activeElement);
-    body.replaceChildren(element("label", {}, "Level ", slider, ` ${own + 1} of ${last + 1}`),
-      element("p", {}, `${facts}, bound ${short(levels.bound[own], 4)}, that is ${percent(levels.relative[own])}, after ${seconds(levels.seconds[own])}.`),
+    body.replaceChildren(element("p", {}, `Level ${own + 1} of ${steps.count}: ${facts}, bound ${short(levels.bound[own], 4)}, that is ${percent(levels.relative[own])}, after ${seconds(levels.seconds[own])}.`),
       plot({ label: "Relative error bound by triangles", x: { name: "triangles", values: levels.triangles, log: true }, y: { name: "relative bound", log: true }, curves: [{ name: "relative bound", values: levels.relative, dots: true }], marked: own, onPick: (i) => view.set({ level: i + 1 }) }));
-    if (focused) slider.focus();
   };
   let shown = view.level;
   view.onChange(() => { if (view.level !== shown) { shown = view.level; show(); } });
@@ -154,14 +149,15 @@ export function sweepSection(result, view, solve) {
       plot({ label: "Largest pressure by entry", x, y: { name: "pressure", zero: true }, curves: [{ name: "largest pressure", values: of(({ contact }) => contact.max_pressure), dots: true }], ...picked }),
       plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),
       element("h3", {}, name(entry, own)),
+      element("div", {}, entry.summary?.error_bound && verdictOf(entry.summary.error_bound)),
       element("p", {}, button, element("span", { className: "quiet small" }, " for its fields and its bound")),
       entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact, result).flat() : []));
   };
   let shown = view.entry;
   view.onChange(() => { if (view.entry !== shown) { shown = view.entry; show(); } });
   show();
-  const rows = sweep.map((entry, i) => [name(entry, i), entry.status, ...["force", "max_pressure", "length"].map((key) => entry.summary?.contact[key] ?? "–"), entry.summary?.energy ?? "–", entry.summary?.iterations ?? "–"]);
-  return section("sweep", "Sweep", element("p", {}, element("label", {}, "Entry ", choice)), body, numbers("Numbers of the sweep", table("Sweep", ["entry", "status", "force", "largest pressure", "closed length", "energy", "iterations"], rows)));
+  const rows = sweep.map((entry, i) => [name(entry, i), entry.status, boundInWords(entry.summary?.error_bound), ...["force", "max_pressure", "length"].map((key) => entry.summary?.contact[key] ?? "–"), entry.summary?.energy ?? "–", entry.summary?.iterations ?? "–"]);
+  return section("sweep", "Sweep", element("p", {}, element("label", {}, "Entry ", choice)), body, numbers("Numbers of the sweep", table("Sweep", ["entry", "status", "bound", "force", "largest pressure", "closed length", "energy", "iterations"], rows)));
 }
 
 // --- figures

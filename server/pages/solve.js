@@ -3,6 +3,7 @@
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
 import { bytes, counted, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
+import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
 import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
@@ -75,18 +76,42 @@ async function showResult(solve) {
     solves.push(await getJson(`/v1/solves/${encodeURIComponent(view.with)}`));
     results.push(await resultOf(solves[1]));
   }
-  showPictures(results, solves);
-  const { summary } = solve;
-  sections.replaceChildren(...[boundSection(summary), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view),
+  const { summary } = solve, steps = summary.levels && stepsOf(summary), isAlone = results.length === 1;
+  const [figure] = showPictures(results, solves, isAlone ? steps : null);
+  if (steps && isAlone) stepThrough(figure, result, steps, solve.links);
+  sections.replaceChildren(...[boundSection(summary), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
     result.study && studySection(result.study), result.sweep && sweepSection(result, view, pose), figuresSection(summary)].filter(Boolean));
 }
 
-function showPictures(results, solves) {
+/// How many levels there are, and which is looked at: at first that of the result.
+function stepsOf({ levels, triangles }) {
+  const count = levels.level.length, own = levels.triangles.indexOf(triangles) + 1;
+  return { count, own, shown: () => Math.min(view.level, count) || own };
+}
+
+/// Shows the mesh of the level that is looked at. All come when the first one is asked for.
+function stepThrough(figure, result, steps, links) {
+  let levels = null;
+  const show = async () => {
+    try {
+      if (steps.shown() !== steps.own) levels ??= getBytes(`${links.result}?fields=levels`).then((all) => decode(all).levels.map((each) => [each.level, resultOnLevel(each)]));
+      const all = new Map(await levels);
+      figure.show(all.get(steps.shown()) ?? result);
+    } catch (error) {
+      failed(error);
+    }
+  };
+  view.onChange(show);
+  show();
+}
+
+function showPictures(results, solves, steps) {
   const figures = results.map((result, i) => new Figure(result, view, solves[i].title || solves[i].id));
   if (figures.length > 1) link(figures);
-  picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id)),
+  picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id), steps),
     element("div", { className: figures.length > 1 ? "two" : "one" }, figures.map((figure, i) => (figures.length > 1 ? element("div", {}, element("h2", {}, i ? element("a", { href: solves[i].links.self }, figure.name) : figure.name), figure.whole) : figure.whole))),
     element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? ". The foundation is dashed." : ", f for flat."));
+  return figures;
 }
 
 /// Two figures have one scale, unless one shows their difference.

@@ -48,6 +48,10 @@ class Observer {
   virtual void iterated(const Iteration&) {}
   /// A mesh that refines itself was solved on this level; the solution is there during the call.
   virtual void refined(const Level&, const Solution&) {}
+  /// Whether entry() is to be called, for which the fields of every entry of a sweep are computed.
+  virtual bool sees_entries() const { return false; }
+  /// An entry of a sweep was solved, the first one being 0; the solution is there during the call.
+  virtual void entry(std::size_t /*number*/, const Solution&) {}
   /// So many entries of a sweep are done. Phases and iterations are those of the problem itself.
   virtual void swept(std::size_t /*done*/, std::size_t /*count*/) {}
   /// So many runs of a study are done.

@@ -54,7 +54,8 @@ Outcome judged(Outcome outcome, const Residuals& residuals, const Settings& sett
 }
 
 std::string advice(const Settings& settings, Outcome outcome, int iterations) {
-  const std::string after = " after " + std::to_string(iterations) + " iterations";
+  const std::string after =
+      " after " + std::to_string(iterations) + (iterations == 1 ? " iteration" : " iterations");
   const bool paper = std::holds_alternative<PaperUzawa>(settings.method);
   const std::string faster =
       paper ? "use rho and augmentation \"auto\", or active_set" : "raise max_iterations or use active_set";

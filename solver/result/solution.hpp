@@ -152,6 +152,8 @@ struct SweepEntry {
   std::vector<Reaction> parts;
   double seconds = 0;
   std::vector<ContactPart> contact;
+  std::optional<ErrorBound>
+      error_bound;  ///< none if its fields were not computed, or nothing finite is known
 };
 
 inline bool is_solved(const SweepEntry& entry) {
@@ -169,6 +171,15 @@ struct TrueErrors {
   /// edges of Solution::admissible_pressure. On patches the bound knows <p, g − v_n> of two pairs together
   /// only (certify/THEORY.md, Theorem 3).
   std::optional<double> total;
+};
+
+/// What is seen of a level of a mesh that refined itself; members as in Solution.
+struct LevelFields {
+  int number = 0;  ///< from 1
+  std::vector<Point> points;
+  std::vector<std::array<int, 3>> triangles;
+  Eigen::MatrixXd displacement_at_points;
+  Eigen::VectorXd error_squares;
 };
 
 /// The numbers of one mesh and scheme of a study.
@@ -219,8 +230,9 @@ struct Solution {
   std::vector<ContactPart> contact;
   std::vector<Iteration> history;
 
-  std::vector<SweepEntry> sweep;  ///< an entry a variation
-  std::vector<StudyRow> study;    ///< the table of a study, scheme by scheme
+  std::vector<SweepEntry> sweep;    ///< an entry a variation
+  std::vector<StudyRow> study;      ///< the table of a study, scheme by scheme
+  std::vector<LevelFields> levels;  ///< of a mesh that refined itself, all but the one whose fields these are
 };
 
 }  // namespace signorini

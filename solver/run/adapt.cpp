@@ -47,6 +47,8 @@ class Levels {
                            static_cast<int>(n.stress + n.displacement + n.contact + n.rotation),
                            summary.error_bound->value, summary.error_bound->relative, summary.iterations, 0},
                           solution));
+    fields_.push_back({levels_.back().number, solution.mesh.points, solution.mesh.triangles,
+                       solution.displacement_at_points, solution.error_squares});
     history_.insert(history_.end(), solution.history.begin(), solution.history.end());
     finest_ = std::make_shared<Solution>(std::move(solution));
     if (best_level_ < 0 || levels_.back().relative < levels_[best_level_].relative) {
@@ -84,6 +86,8 @@ class Levels {
     summary.timings = timings(progress_);
     summary.levels = std::move(levels_);
     best_->history = std::move(history_);
+    std::erase_if(fields_, [&](const LevelFields& own) { return own.number == best_level_ + 1; });
+    best_->levels = std::move(fields_);
     return std::move(*best_);
   }
 
@@ -128,6 +132,7 @@ class Levels {
   std::shared_ptr<Solution> finest_, best_;  // often the same
   int best_level_ = -1;
   std::vector<Level> levels_;
+  std::vector<LevelFields> fields_;
   std::vector<Iteration> history_;
 };
 

@@ -317,6 +317,7 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
+  if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3);
   return estimate;

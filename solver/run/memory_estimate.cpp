@@ -155,6 +155,12 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
   return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
 }
 
+double memory_of_levels(const Spaces& spaces, double triangles) {
+  constexpr double all = 3, share = 1, per_triangle = 0.5;  // points
+  const double numbers = per_triangle * (2 + spaces.components) + share;
+  return all * triangles * (kNumber * numbers + 3 * sizeof(int));
+}
+
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
@@ -169,8 +175,10 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
                             sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces)) +
                             tables(problem, spaces);
-  // A mesh that refines itself keeps the solution of the level before.
-  const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) : 0;
+  // A mesh that refines itself keeps the solution of the level before, and what is seen of all.
+  const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
+                                                    memory_of_levels(spaces, sizes.triangles)
+                                              : 0;
   return kSlack * (kept + std::max(factoring, certifying) + before);
 }
 

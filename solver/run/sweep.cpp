@@ -23,6 +23,7 @@ SweepEntry entry_of(Solution solution) {
   entry.sums = summary.contact;
   entry.parts = summary.parts;
   entry.contact = std::move(solution.contact);
+  entry.error_bound = summary.error_bound;
   return entry;
 }
 
@@ -77,16 +78,18 @@ struct AffineForce {
 /// A variation that was recovered, and how its numbers change with λ − s.
 class Sweep::Reference {
  public:
-  /// `condense(problem)` eliminates.
+  /// `condense(problem)` eliminates. One that is shown is not asked for other gaps.
   template <typename Condense>
-  Reference(Problem posed, const Condense& condense, const Settings& settings, Progress& progress)
+  Reference(Problem posed, const Condense& condense, const Settings& settings, Progress& progress,
+            const ShowSolution& show)
       : problem_(std::move(posed)), condensed_(condense(problem_)), contact_(condensed_.contact()) {
     Solution solution = condensed_.solve(settings, progress);
+    if (show) show(solution);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
     mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement,
                                space().clearance(clearance_));
-    observe(solution.stress, progress);
+    if (!show) observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
   }
 
@@ -210,7 +213,7 @@ bool Sweep::is_at_hand(const Variation& variation) const {
          !(variation.material && variation.material_key.empty());
 }
 
-SweepEntry Sweep::solve(const Variation& variation, Progress& progress) {
+SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const ShowSolution& show) {
   apply(variation, problem_, varied_);
   std::optional<SweepEntry> entry;
   if (!is_at_hand(variation)) {
@@ -218,14 +221,14 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress) {
     reference_.reset();
     operator_.reset();
   }
-  if (reference_) entry = reference_->with_gaps_of(varied_, settings_, progress);
+  if (reference_ && !show) entry = reference_->with_gaps_of(varied_, settings_, progress);
   if (!entry) {
     reference_.reset();
     const auto condense = [&](const Problem& posed) {
       return operator_ ? CondensedProblem(posed, operator_, progress)
                        : CondensedProblem(posed, mesh_, settings_.factorization, progress);
     };
-    reference_ = std::make_unique<Reference>(varied_, condense, settings_, progress);
+    reference_ = std::make_unique<Reference>(varied_, condense, settings_, progress, show);
     const bool is_known = !variation.material || !variation.material_key.empty();
     operator_ = is_known ? reference_->used_operator() : nullptr;
     material_key_ = variation.material ? variation.material_key : "";

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "condensed_problem.hpp"
 
 namespace signorini {
@@ -7,14 +9,18 @@ namespace signorini {
 /// What stands in an entry, of a solution of the variation.
 SweepEntry entry_of(Solution solution);
 
+/// Shows the solution of a variation; empty if nobody looks.
+using ShowSolution = std::function<void(const Solution&)>;
+
 /// Solves variations of a problem by its operator, or where the material is another by the operator of that,
 /// which is made on the same mesh: variations of one material that follow each other share one.
 ///
-/// New loads and boundary values cost a forward and a backward solve and the element-wise recovery. New gaps
-/// alone cost the dense step: where g changes by a function s of the clearance space (always for P0, for P1
-/// if it is linear on each contact edge), λ − s moves as λ did, so c becomes c + S s, and energy, forces and
-/// reactions follow from those of the last entry that was recovered, because they are quadratic and affine in
-/// λ − s.
+/// New loads and boundary values cost a forward and a backward solve, the element-wise recovery and the error
+/// bound. New gaps alone cost the dense step, without fields that could be bounded: where g changes by a
+/// function s of the clearance space (always for P0, for P1 if it is linear on each contact edge), λ − s
+/// moves as λ did, so c becomes c + S s, and energy, forces and reactions follow from those of the last entry
+/// that was recovered, because they are quadratic and affine in λ − s. Where solutions are shown, new gaps
+/// cost as much as new loads.
 class Sweep {
  public:
   /// Of the problem whose operator was kept. Problem and settings must outlive the sweep.
@@ -22,7 +28,7 @@ class Sweep {
   ~Sweep();
 
   /// Throws Cancelled, SolveError and InvalidProblem.
-  SweepEntry solve(const Variation& variation, Progress& progress);
+  SweepEntry solve(const Variation& variation, Progress& progress, const ShowSolution& show);
 
  private:
   class Reference;

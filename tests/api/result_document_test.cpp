@@ -161,6 +161,20 @@ TEST(WriteResult, WritesTheSharesOfTheErrorBoundWhenAskedByNameAndIfThereIsOne) 
   EXPECT_FALSE(document(solution, {}).contains("error_squares"));
 }
 
+TEST(WriteResult, WritesWhatIsSeenOfTheLevelsWhenAskedByNameAndIfThereAreAny) {
+  Solution solution = elastic_solution();
+  const ResultFields fields = ResultFields::parse("levels");
+  EXPECT_FALSE(document(solution, fields).contains("levels"));
+  LevelFields level{2, {{0, 0}, {1, 0}, {0, 1}}, {{0, 1, 2}}, Eigen::MatrixXd(2, 3), Eigen::VectorXd(1)};
+  level.displacement_at_points << 1, 2, 3, 4, 5, 6;
+  level.error_squares << 0.25;
+  solution.levels = {level};
+  EXPECT_EQ(document(solution, fields)["levels"],
+            json::parse(R"([{"level": 2, "points": [[0, 0], [1, 0], [0, 1]], "triangles": [[0, 1, 2]],
+                             "displacement_at_points": [[1, 4], [2, 5], [3, 6]], "error_squares": [0.25]}])"));
+  EXPECT_FALSE(document(solution, {}).contains("levels"));
+}
+
 TEST(WriteResult, RefusesTheInvariantsOfAMembraneBeforeItWrites) {
   for (const std::string member : {"principal", "von_mises"}) {
     const auto fields = ResultFields::parse("summary," + member);
@@ -182,7 +196,7 @@ TEST(ResultFieldsParse, RefusesUnknownNamesAndSaysWhichItKnows) {
     const auto faults = faults_of([&] { ResultFields::parse(list); });
     ASSERT_EQ(pointers_of(faults), std::vector<std::string>{"/fields"}) << list;
     EXPECT_THAT(faults[0].detail, HasSubstr("summary, problem, mesh, displacement, stress, contact, history, "
-                                            "sweep, study, principal, von_mises, error_squares"));
+                                            "sweep, study, principal, von_mises, error_squares, levels"));
   }
 }
 

@@ -324,7 +324,12 @@ test("Below it stand the bound in words, contact, sweep, levels and study, and t
   await page.getByLabel("Entry", { exact: true }).last().selectOption("3");
   await page.locator("#sweep h3").first().getByText("tilted", { exact: true }).waitFor();
   await page.waitForFunction(() => location.hash.includes("entry=3"));
+  await page.getByText("Numbers of the sweep").click();
+  // The others have but other gaps than the entry before them.
+  assert.deepEqual(await page.locator("#sweep table").last().locator("tbody td:nth-child(3)").allInnerTexts().then((all) => all.map((own) => /^[\d.]+ %/.test(own))), [true, false, false, true]);
+  assert.equal(await page.locator("#sweep .verdict").count(), 0);
   await page.getByLabel("Entry", { exact: true }).last().selectOption("4");
+  await page.locator("#sweep .verdict").waitFor();
   await page.getByRole("button", { name: "Solve it alone" }).click();
   await page.waitForURL((url) => !url.pathname.endsWith(id));
   const twice = (await result(new URL(page.url()).pathname.split("/").at(-1), "problem")).problem, sweep = await service.example("gap-sweep");
@@ -335,6 +340,24 @@ test("Below it stand the bound in words, contact, sweep, levels and study, and t
   await page.getByLabel("Level", { exact: true }).fill("2");
   const { summary: { levels } } = await result(adaptive, "summary");
   await page.locator("#levels").getByText(`${levels.triangles[1]} triangles`).waitFor();
+  const { levels: seen } = await result(adaptive, "levels"), last = levels.level.length;
+  assert.deepEqual(seen.map(({ level }) => level), levels.level.slice(0, -1));
+  const told = async (level) => {
+    await page.getByLabel("Level", { exact: true }).fill(String(level));
+    await page.waitForFunction((own) => document.querySelector(".controls").textContent.includes(`${own} of`), level);
+    await settled();
+    await settled();
+    const box = await frame().boundingBox();
+    return pick(0.5 * box.width, 0.5 * box.height);
+  };
+  await page.getByLabel("Field").selectOption("error");
+  for (const { level, error_squares: squares } of [seen[0], seen.at(-1)]) {
+    const own = await told(level);
+    assert.ok(Number(own.triangle) < levels.triangles[level - 1]);
+    close(Number(own.value), Math.sqrt(squares[own.triangle]));
+  }
+  close(Number((await told(last)).value), Math.sqrt((await result(adaptive, "error_squares")).error_squares[(await told(last)).triangle]));
+  wellDone();
   const study = await service.solve(await service.example("convergence-study"));
   await open(study);
   assert.equal(await page.locator("#study .plot").count(), 2);

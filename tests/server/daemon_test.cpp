@@ -86,6 +86,11 @@ TEST_F(DaemonTest, EntriesOfASweepAreSolvesOfTheirOwn) {
     const double energy = alone.at("summary").at("energy");
     EXPECT_NEAR(entry.at("summary").at("energy").get<double>(), energy, 1e-10 * std::abs(energy));
     EXPECT_EQ(entry.at("contact").at("bottom").at("open"), alone.at("contact").at("bottom").at("open"));
+    // The first entry and the last, whose load is another one.
+    EXPECT_EQ(entry.at("summary").contains("error_bound"), i == 0 || i + 1 == sweep.size());
+    if (!entry.at("summary").contains("error_bound")) continue;
+    const double bound = alone.at("summary").at("error_bound").at("value");
+    EXPECT_NEAR(entry.at("summary").at("error_bound").at("value").get<double>(), bound, 1e-8 * bound);
   }
 }
 

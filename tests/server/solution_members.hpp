@@ -40,7 +40,7 @@ auto members(T& all) {
   return std::tie(a, b, c, d);
 }
 template <typename T>
-requires Some<T, ErrorBound::Parts> || Some<T, TrueErrors>
+requires Some<T, ErrorBound::Parts> || Some<T, TrueErrors> || Some<T, LevelFields>
 auto members(T& all) {
   auto& [a, b, c, d, e] = all;
   return std::tie(a, b, c, d, e);
@@ -70,14 +70,18 @@ auto members(T& all) {
 }
 template <Some<SweepEntry> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
-template <typename T>
-requires Some<T, Summary> || Some<T, Solution>
+template <Some<Summary> T>
 auto members(T& all) {
   auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = all;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+}
+template <Some<Solution> T>
+auto members(T& all) {
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 
 /// Gives every member a value of its own.

@@ -104,6 +104,7 @@ class Terminal(unittest.TestCase):
         self.assertTrue(table.startswith("from  [31m elsewhere"))
         for number in range(len(sweep["sweep"])):
             self.assertRegex(table, rf"\n{number}\b.* \S+ +\S+ +\S+ +\S+ +\S+")
+        self.assertEqual(re.findall(r"^(\d) .* \S+ %", table, re.MULTILINE), ["0", "3"])
 
     def test_tables_for_spreadsheets(self):
         problem = example("elastic-block")

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -232,6 +233,29 @@ TEST(Adapt, ServesTheLevelWithTheSmallestBound) {
                                          std::to_string(levels.back().number)),
             std::string::npos)
       << solution.summary.advice;
+}
+
+TEST(Adapt, KeepsWhatIsSeenOfTheOtherLevels) {
+  Problem problem = problems::paper(Scheme::conforming, 2);
+  problem.body = {};
+  problem.boundary = {{"left", Fixed{}}, {"right", Fixed{VectorField(1)}}, {"bottom", Contact{}}};
+  // The best of the first is not its last.
+  for (const Problem& adapted :
+       {adaptive(problem, 1e-300, 10000), adaptive(problems::paper(Scheme::nonconforming, 4), 0.1, 100000)}) {
+    const Solution solution = solve(adapted, by(ActiveSet{}));
+    const std::vector<Level>& levels = solution.summary.levels;
+    ASSERT_EQ(solution.levels.size() + 1, levels.size());
+    int before = 0;
+    for (const LevelFields& level : solution.levels) {
+      EXPECT_GT(level.number, std::exchange(before, level.number));
+      const Level& row = levels[static_cast<std::size_t>(level.number) - 1];
+      EXPECT_NE(row.triangles, solution.summary.triangles);
+      EXPECT_EQ(level.triangles.size(), static_cast<std::size_t>(row.triangles));
+      EXPECT_EQ(level.error_squares.size(), row.triangles);
+      EXPECT_LE(std::sqrt(level.error_squares.sum()), row.bound * (1 + 1e-9));
+      EXPECT_EQ(level.displacement_at_points.cols(), static_cast<Eigen::Index>(level.points.size()));
+    }
+  }
 }
 
 TEST(Adapt, LowersTheBoundWhereAHoleTouches) {

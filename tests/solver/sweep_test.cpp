@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
@@ -62,6 +63,10 @@ void expect_entry(const SweepEntry& entry, const Solution& expected, double tole
     expect_near(found.clearance, part.clearance, tolerance, 0);
     expect_near(found.pressure, part.pressure, tolerance, force);
   }
+  if (!entry.error_bound) return;
+  EXPECT_NEAR(entry.error_bound->value, expected.summary.error_bound->value,
+              tolerance * std::sqrt(std::abs(expected.summary.energy)));
+  EXPECT_EQ(entry.error_bound->guaranteed, expected.summary.error_bound->guaranteed);
 }
 
 /// Constant, linear and curved gaps, and every third time other loads.
@@ -95,8 +100,11 @@ TEST(Sweep, EntriesAreSingleSolves) {
     for (const Problem& problem : single) sweep.push_back(data_of(problem, problem.load_key));
     const Solution solution = solve_sweep(family, sweep, {ActiveSet{}, {}});
     ASSERT_EQ(solution.sweep.size(), single.size());
-    for (std::size_t i = 0; i < single.size(); i += sanitized ? 2 : 1)
+    for (std::size_t i = 0; i < single.size(); i += sanitized ? 2 : 1) {
       expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-10);
+      // Every third has other loads.
+      EXPECT_TRUE(solution.sweep[i].error_bound || i % 3 != 0) << i;
+    }
     EXPECT_EQ(solution.summary.energy, solve(family, {ActiveSet{}, {}}).summary.energy);
   }
 }
@@ -275,6 +283,52 @@ TEST(Sweep, RefusesEveryBadVariationAtOnce) {
     EXPECT_EQ(invalid.faults()[0].where, "/sweep/1/boundary/top/gap");
     EXPECT_EQ(invalid.faults()[1].where, "/sweep/3/boundary/bottom/gap");
   }
+}
+
+/// Keeps what it is shown of entries.
+class Seer : public Observer {
+ public:
+  bool sees_entries() const override { return true; }
+  void entry(std::size_t number, const Solution& solution) override { seen.emplace_back(number, solution); }
+
+  std::vector<std::pair<std::size_t, Solution>> seen;
+};
+
+TEST(Sweep, ShowsTheFieldsOfItsEntriesToWhoWantsThem) {
+  Problem family = problems::paper(Scheme::conforming, 6);
+  family.boundary = {{"bottom", Contact{}}};
+  family.body = Field(-1);
+  std::vector<Problem> single(4, family);
+  std::vector<Variation> sweep;
+  for (std::size_t i = 0; i < single.size(); ++i) {
+    single[i].boundary["bottom"] = Contact{0.1 * static_cast<double>(i)};
+    if (i == 2) single[i].body = Field(1);  // lifts it off
+    sweep.push_back(data_of(single[i], i == 2 ? "up" : "down"));
+  }
+  for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{1e-12}}}) {
+    Seer seer;
+    const Solution solution = solve_sweep(family, sweep, {method, {}}, seer);
+    EXPECT_NE(solution.sweep[2].error, "");
+    std::vector<std::size_t> numbers;
+    for (const auto& [number, shown] : seer.seen) {
+      numbers.push_back(number);
+      const Solution expected = solve(single[number], {method, {}});
+      expect_entry(solution.sweep[number], shown, 1e-10);
+      EXPECT_TRUE(solution.sweep[number].error_bound);
+      EXPECT_LT((shown.displacement - expected.displacement).norm(), 1e-7 * expected.displacement.norm());
+    }
+    EXPECT_EQ(numbers, (std::vector<std::size_t>{0, 1, 3}));
+  }
+}
+
+TEST(Sweep, ThePapersIterationShowsTheFieldsOfItsEntriesToo) {
+  Problem family = problems::paper(Scheme::nonconforming, 4);
+  const Settings settings{PaperUzawa{0.1, 1, 0, 1e-13, 100000}, {}};
+  Seer seer;
+  const Solution solution = solve_sweep(family, {data_of(family, "loads")}, settings, seer);
+  ASSERT_EQ(seer.seen.size(), 1u);
+  expect_entry(solution.sweep[0], seer.seen[0].second, 1e-10);
+  EXPECT_TRUE(solution.sweep[0].error_bound);
 }
 
 /// Ends the job after so many entries.

@@ -34,6 +34,17 @@ class StressField:
 
 
 @dataclass(frozen=True)
+class LevelFields:
+    """What is seen of a level of an adaptive mesh."""
+
+    level: int  #: its number in `Levels.level`
+    points: Reals  #: (n, 2), lengths
+    triangles: Integers  #: (m, 3), numbers of points
+    displacement_at_points: Reals  #: (n,) or (n, 2)
+    error_squares: Reals  #: (m,), what each triangle adds to the square of the error bound
+
+
+@dataclass(frozen=True)
 class ContactPart:
     """One part of the contact boundary: a row a contact edge (nonconforming) or a node (conforming)."""
 

@@ -9,7 +9,7 @@ from . import export
 from .arrays import Reals
 from .document import read
 from .errors import NotInResult, SolveFailed
-from .fields import ContactPart, DisplacementField, History, Mesh, StressField
+from .fields import ContactPart, DisplacementField, History, LevelFields, Mesh, StressField
 from .plot import plot
 from .summary import StudyTable, Summary, SweepEntry
 
@@ -101,6 +101,12 @@ class Result:
     def error_squares(self) -> Reals:
         """(m,), what each triangle adds to the square of the error bound, energy per thickness; if there is a bound."""
         return self._reals("error_squares")
+
+    @property
+    def levels(self) -> tuple[LevelFields, ...]:
+        """The levels of an adaptive mesh, but the one whose fields the others are; if they were asked for."""
+        levels: tuple[LevelFields, ...] = read(tuple[LevelFields, ...], self._member("levels"))
+        return levels
 
     @property
     def contact(self) -> dict[str, ContactPart]:

@@ -128,6 +128,7 @@ class SweepSummary:
     residuals: Residuals
     contact: ContactSums
     parts: dict[str, Reaction]
+    error_bound: ErrorBound | None  #: none of an entry that has but new gaps
     seconds: float  #: for this entry
 
 
