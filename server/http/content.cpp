@@ -80,8 +80,10 @@ void compress(Response& response) {
     response.write_body = [write = std::move(response.write_body)](const PieceSink& sink) {
       return write_compressed(write, sink);
     };
+  } else if (response.compressed) {
+    response.body = *response.compressed;
   } else if (response.body.size() >= shortest_compressed_body) {
-    response.body = response.compressed ? *response.compressed : compressed(response.body);
+    response.body = compressed(response.body);
   } else {
     return;
   }

@@ -81,6 +81,13 @@ std::string nothing_takes(const std::vector<ContactPressure::Lack>& lacks) {
                          "the mesh where the body touches, or fix a part";
 }
 
+/// Products of numbers so small have lost digits, or are 0.
+bool are_lost(const Totals& totals, const Eigen::MatrixXd& stress) {
+  constexpr double least = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+  const double energies = totals.all.strain + totals.all.stress + totals.work;
+  return energies < least && !stress.isZero(0);
+}
+
 void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
   all.insert(all.end(), some.begin(), some.end());
 }
@@ -140,6 +147,7 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
         std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
   totals.add(carried);
   certificate.bound = bound_from(totals);
+  if (are_lost(totals, solution.stress)) certificate.bound.value = std::numeric_limits<double>::infinity();
   certificate.squares = std::move(totals.shares);
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);
   certificate.bound.unmet = std::move(unmet);

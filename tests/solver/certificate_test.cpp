@@ -390,6 +390,24 @@ TEST(Certificate, OfAMembraneDoesNotDependOnUnits) {
   }
 }
 
+/// Energies are squares: numbers that are normal have some that are not, and lose their digits.
+TEST(Certificate, IsNotMadeOfProductsThatHaveLostTheirDigits) {
+  for (const Scheme scheme : schemes)
+    for (const double load : {-1e-140, -1e-152, -1e-160, -1e-161, -1e-200}) {
+      Problem problem = problems::paper(scheme, 4);
+      problem.body = Field(load);
+      const Solution solution = solve(problem, {ActiveSet{}, {}});
+      if (load < -1e-145) {
+        ASSERT_TRUE(solution.summary.error_bound) << load;
+        EXPECT_TRUE(solution.summary.error_bound->guaranteed) << load;
+      } else {
+        EXPECT_FALSE(solution.summary.error_bound) << load;
+        ASSERT_FALSE(solution.summary.notes.empty());
+        EXPECT_NE(solution.summary.notes.back().find("range of double precision"), std::string::npos);
+      }
+    }
+}
+
 TEST(Certificate, SharesTheBoundOutToTheTriangles) {
   for (const Scheme scheme : schemes) {
     const Solution solution = solve_exactly(problems::SignoriniEdge::problem(scheme, 8));
