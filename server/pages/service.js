@@ -44,6 +44,7 @@ async function refusalOf(reply) {
 }
 
 /// There is no service, or its reply breaks off.
+export const isAway = "The service cannot be reached; trying again.";
 export class Unreached extends Error {
   constructor() {
     super("The service cannot be reached.");

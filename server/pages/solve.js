@@ -8,7 +8,7 @@ import { Figure } from "/pages/figure.js";
 import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
 import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
-import { ask, follow, getBytes, getJson, persist, postJson } from "/pages/service.js";
+import { ask, follow, getBytes, getJson, isAway, persist, postJson } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
 
@@ -18,7 +18,6 @@ const head = element("div", { className: "head" }), picture = element("div", { c
 const history = new History();
 main.append(head, picture, history.whole, sections);
 
-const isAway = "The service cannot be reached; trying again.";
 const failed = (error) => picture.replaceChildren(element("p", { className: "notice bad", role: "alert" }, error.message));
 
 // --- the head

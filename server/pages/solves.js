@@ -1,7 +1,7 @@
 // The solves: what waits, runs and has ended, as it happens.
 
 import { aria, boundInWords, counted, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
-import { ask, getJson, Unreached } from "/pages/service.js";
+import { ask, getJson, isAway, Unreached } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
 const pause = 1000; // ms between two looks
@@ -101,7 +101,7 @@ async function look() {
     const open = solves.filter(isOpen).length;
     said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : Object.keys(filters()).length ? "None is like that." : "Nothing was posted yet.";
   } catch (error) {
-    said.textContent = error instanceof Unreached ? "The service cannot be reached; trying again." : error.message;
+    said.textContent = error instanceof Unreached ? isAway : error.message;
   }
   choose();
   looking = false;

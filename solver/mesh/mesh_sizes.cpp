@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "mesh/clusters.hpp"
@@ -99,7 +98,6 @@ double edges_around(const LocalSize& local, const Segment& edge, double size) {
   return kCutOnceMore * (end - begin) * halvings(length, local.size) + kEdgesByDoubling * sides * growing;
 }
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Of a triangle whose sides are alike, by their length.
 constexpr double kHeight = 0.87;
 
@@ -156,7 +154,7 @@ class PredictedSizes::OfPolygon {
       stretch.width *= frame.extent();
     }
     for (int ring = 0; ring < rings_.size(); ++ring)
-      turns_.push_back((rings_.signed_area(ring) > 0) == (ring == 0) ? 1 : -1);
+      turns_.push_back(rings_.has_domain_on_the_left(ring) ? 1 : -1);
     find_tips();
     clusters_ = clusters(rings_.points);
   }
@@ -179,7 +177,7 @@ class PredictedSizes::OfPolygon {
       else
         triangles += pieces.count * (2 * pieces.length >= size ? kTrianglesByEdge : kTrianglesByShortEdge);
       along_it += stretch.length * 0.5 *
-                  std::min(pieces.reach_across ? kInfinity : kHeight * pieces.length, stretch.width);
+                  (pieces.reach_across ? stretch.width : std::min(kHeight * pieces.length, stretch.width));
     }
     for (const Tip& tip : tips_)
       for (const int edge : tip.edges) {
@@ -211,14 +209,14 @@ class PredictedSizes::OfPolygon {
 
   void find_tips() {
     constexpr double sharp = 0.5;
-    std::vector<int> before(rings_.points.size());
-    for (int e = 0; e < static_cast<int>(before.size()); ++e) before[rings_.next(e)] = e;
-    for (int e = 0; e < static_cast<int>(before.size()); ++e) {
-      const Vector a = rings_.points[rings_.next(e)] - rings_.points[e],
-                   b = rings_.points[before[e]] - rings_.points[e];
-      const double sine = turns_[rings_.ring[e]] * (a.x() * b.y() - a.y() * b.x()) / (a.norm() * b.norm());
-      if (sine > 0 && sine < sharp && a.dot(b) > 0)
-        tips_.push_back({rings_.points[e], {before[e], e}, 0.5 * std::min(a.norm(), b.norm()), sine});
+    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
+      const int behind = rings_.next(e);
+      const auto [from, at] = rings_.edge(e);
+      const Point& to = rings_.points[rings_.next(behind)];
+      const double own = (from - at).norm(), other = (to - at).norm();
+      const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other);
+      if (sine > 0 && sine < sharp && (from - at).dot(to - at) > 0)
+        tips_.push_back({at, {e, behind}, 0.5 * std::min(own, other), sine});
     }
   }
 
@@ -239,17 +237,13 @@ class PredictedSizes::OfPolygon {
     for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
       const Segment edge = rings_.edge(e);
       const auto [begin, end] = shares_within(edge, centre, radius);
-      const auto at = [&](double share) -> Vector { return edge[0] + share * (edge[1] - edge[0]) - centre; };
-      const auto sector = [&](const Vector& a, const Vector& b) {
-        return radius * radius * std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      const auto at = [&](double share) -> Point { return edge[0] + share * (edge[1] - edge[0]); };
+      const auto sector = [&](const Point& a, const Point& b) {
+        return radius * radius * std::atan2(twice_area(centre, a, b), (a - centre).dot(b - centre));
       };
-      double of_edge = 0;
-      if (end > begin) {
-        const Vector a = at(begin), b = at(end);
-        of_edge = sector(at(0), a) + (a.x() * b.y() - a.y() * b.x()) + sector(b, at(1));
-      } else {
-        of_edge = sector(at(0), at(1));
-      }
+      const Point a = at(begin), b = at(end);
+      const double of_edge = end > begin ? sector(edge[0], a) + twice_area(centre, a, b) + sector(b, edge[1])
+                                         : sector(edge[0], edge[1]);
       twice += turns_[rings_.ring[e]] * of_edge;
     }
     return std::clamp(twice / 2, 0., area_);

@@ -31,7 +31,7 @@ class Count {
  public:
   Count(const Rings& unit, const EdgePairs& near, double enough) : rings_(unit), enough_(enough) {
     for (int ring = 0; ring < unit.size(); ++ring)
-      domain_on_the_left_.push_back((unit.signed_area(ring) > 0) == (ring == 0));
+      domain_on_the_left_.push_back(unit.has_domain_on_the_left(ring));
     for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge)
       edges_.emplace_back(unit.edge(edge));
     sort_by_edge(near);

@@ -46,6 +46,9 @@ struct Rings {
   /// The area inside a ring; negative if the ring runs clockwise.
   double signed_area(int number) const;
 
+  /// Whether the domain lies on the left of the edges of a ring.
+  bool has_domain_on_the_left(int number) const { return (signed_area(number) > 0) == (number == 0); }
+
  private:
   std::vector<Point> vertices_;
   std::vector<int> first_vertex_;  ///< of each ring, and the number of vertices

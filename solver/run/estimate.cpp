@@ -42,6 +42,13 @@ MeshRequest coarser(MeshRequest request, double times) {
   return request;
 }
 
+/// By how much longer edges a mesh has no more triangles than `most`: twice, four times and so on.
+double longer_for(std::int64_t triangles, std::int64_t most) {
+  double times = 1;
+  while (static_cast<double>(triangles) > static_cast<double>(most) * times * times) times *= 2;
+  return times;
+}
+
 /// The estimates of a problem by all its meshes and schemes, which have its domain and its conditions in
 /// common.
 class Estimation {
@@ -86,9 +93,9 @@ class Estimation {
   void cut(const Mesh& mesh);
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles);
-  void cut_coarser(std::int64_t unrefined, std::int64_t triangles);
+  void cut_coarser(std::int64_t unrefined, const std::optional<MeshRequest>& with_few,
+                   std::int64_t triangles);
   std::optional<MeshRequest> coarser_with_few(std::int64_t triangles) const;
-  std::int64_t most_made(std::int64_t triangles) const;
   bool has_formula() const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
@@ -151,8 +158,7 @@ bool Estimation::has_formula() const {
 /// its vertices or its narrow places ask for more, whatever the size.
 std::optional<MeshRequest> Estimation::coarser_with_few(std::int64_t triangles) const {
   constexpr int attempts = 3;
-  double times = 1;
-  while (static_cast<double>(triangles) > static_cast<double>(few_triangles) * times * times) times *= 2;
+  double times = longer_for(triangles, few_triangles);
   for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
     const MeshRequest request = coarser(problem_.mesh, times);
     if ((*predicted_)(request).triangles <= few_triangles) return request;
@@ -161,25 +167,17 @@ std::optional<MeshRequest> Estimation::coarser_with_few(std::int64_t triangles) 
 }
 
 /// By a mesh of the shape of those that it asks for. A rectangle's are made at once.
-void Estimation::cut_coarser(std::int64_t unrefined, std::int64_t triangles) {
+void Estimation::cut_coarser(std::int64_t unrefined, const std::optional<MeshRequest>& with_few,
+                             std::int64_t triangles) {
   if (const auto* rectangle = std::get_if<Rectangle>(&problem_.domain)) {
-    double times = 1;
-    while (static_cast<double>(unrefined) > static_cast<double>(most_cut) * times * times) times *= 2;
-    const MeshRequest request = coarser(problem_.mesh, times);
+    const MeshRequest request = coarser(problem_.mesh, longer_for(unrefined, most_cut));
     return cut_finer(rectangle_mesh(*rectangle, divisions(*rectangle, request), request.pattern), triangles);
   }
-  const std::optional<MeshRequest> request = coarser_with_few(unrefined);
-  std::optional<Mesh> mesh = request ? make_small_mesh(problem_.domain, *request) : std::nullopt;
+  if (!with_few) return;
+  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, *with_few);
   if (!mesh) return;
   may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
   cut_finer(std::move(*mesh), triangles);
-}
-
-/// A mesh that is made to be counted has few triangles, or more where no coarser one shows its shape.
-std::int64_t Estimation::most_made(std::int64_t triangles) const {
-  const bool has_own_shape = std::holds_alternative<Polygon>(problem_.domain) && triangles > few_triangles &&
-                             triangles <= most_of_own_shape && !coarser_with_few(triangles);
-  return has_own_shape ? most_of_own_shape : few_triangles;
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
@@ -226,8 +224,11 @@ Counts Estimation::count() {
   std::optional<Mesh> mesh;
   if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
-  if (const std::int64_t most = most_made(sizes.triangles);
-      !is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
+  const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
+  const std::optional<MeshRequest> with_few = is_large ? coarser_with_few(sizes.triangles) : std::nullopt;
+  // Few, or more where no coarser one shows the shape.
+  const std::int64_t most = is_large && !with_few ? most_of_own_shape : few_triangles;
+  if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
     mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
   if (mesh) {
     may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
@@ -241,7 +242,8 @@ Counts Estimation::count() {
   } else {
     // Those of another mesh show the shape of a polygon too.
     if (is_rectangle()) pieces_.reset();
-    if (std::min(may_be_made_, may_be_cut_) > 0 && !has_formula()) cut_coarser(sizes.triangles, triangles);
+    if (std::min(may_be_made_, may_be_cut_) > 0 && !has_formula())
+      cut_coarser(sizes.triangles, with_few, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {
