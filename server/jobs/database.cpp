@@ -35,10 +35,6 @@ std::string bytes_of(const SQLite::Column& column) {
   return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
 }
 
-std::int64_t milliseconds(Time time) {
-  return std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
-}
-
 std::optional<Time> time_of(const SQLite::Column& column) {
   if (column.isNull()) return std::nullopt;
   return Time(std::chrono::milliseconds(column.getInt64()));

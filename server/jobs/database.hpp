@@ -38,8 +38,6 @@ SQLite::Statement prepared(const SQLite::Database& database, const std::string& 
 
 std::string bytes_of(const SQLite::Column& column);
 
-/// Milliseconds since 1970, as times are stored.
-std::int64_t milliseconds(Time time);
 std::optional<Time> time_of(const SQLite::Column& column);
 
 /// A connection to a database of jobs, which is made if it is missing: a commit that is synced survives the

@@ -55,6 +55,10 @@ std::string iso8601(Time time) {
   return text.data();
 }
 
+std::int64_t to_milliseconds(Time time) {
+  return std::chrono::floor<std::chrono::milliseconds>(time.time_since_epoch()).count();
+}
+
 const char* name(JobStatus status) {
   return status_names.at(static_cast<std::size_t>(status));
 }

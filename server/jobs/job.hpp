@@ -19,6 +19,9 @@ using Time = std::chrono::system_clock::time_point;
 /// `2026-01-31T12:34:56.789Z`.
 std::string iso8601(Time time);
 
+/// Since 1970, as times are stored.
+std::int64_t to_milliseconds(Time time);
+
 enum class JobStatus { queued, running, succeeded, failed, cancelled };
 inline constexpr std::array all_statuses{JobStatus::queued, JobStatus::running, JobStatus::succeeded,
                                          JobStatus::failed, JobStatus::cancelled};

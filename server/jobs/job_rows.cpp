@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
-
 #include "server/jobs/stored_form.hpp"
 
 namespace signorini::server {
@@ -31,15 +29,6 @@ Job damaged_job(std::string id, std::string owner) {
 }
 
 }  // namespace
-
-std::string pack_list(const std::vector<std::string>& list) {
-  return list.empty() ? "" : nlohmann::json(list).dump();
-}
-
-std::vector<std::string> unpack_list(const std::string& column) {
-  if (column.empty()) return {};
-  return nlohmann::json::parse(column).get<std::vector<std::string>>();
-}
 
 const std::string is_intact = "seal IS NULL OR seal = (" + seal + ")";
 
@@ -84,17 +73,10 @@ std::optional<Batch> batch_of(const SQLite::Statement& row) try {
   batch.id = row.getColumn(0).getString();
   batch.owner = row.getColumn(1).getString();
   batch.created = time_of(row.getColumn(2)).value_or(Time());
-  const auto content = nlohmann::json::parse(unpack_text(bytes_of(row.getColumn(3))));
-  content.at("title").get_to(batch.title);
-  content.at("tags").get_to(batch.tags);
-  content.at("jobs").get_to(batch.jobs);
+  unpack_content(bytes_of(row.getColumn(3)), batch);
   return batch;
 } catch (const std::exception&) {
   return std::nullopt;
-}
-
-std::string pack_content(const Batch& batch) {
-  return pack_text(nlohmann::json{{"title", batch.title}, {"tags", batch.tags}, {"jobs", batch.jobs}}.dump());
 }
 
 std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id) {
@@ -112,7 +94,7 @@ std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, 
 
 void fail_as_damaged(SQLite::Database& database, const std::string& id, const std::string& what,
                      std::int64_t retention) {
-  const std::int64_t now = milliseconds(std::chrono::system_clock::now());
+  const std::int64_t now = to_milliseconds(std::chrono::system_clock::now());
   // What a row says that is not intact may be anything: a size that would push everything else out, an age.
   prepared(
       database,

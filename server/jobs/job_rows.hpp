@@ -11,10 +11,6 @@ namespace signorini::server {
 // The rows of jobs and problems. Each carries a seal over all that it holds, so that bytes which are no
 // longer what was written are not taken for true. One without a seal comes from an older version.
 
-/// A list of texts in a column, and back. Throws std::runtime_error if it is none.
-std::string pack_list(const std::vector<std::string>& list);
-std::vector<std::string> unpack_list(const std::string& column);
-
 /// The columns that job_of() reads.
 extern const std::string job_columns;
 constexpr int job_column_count = 12;
@@ -32,8 +28,6 @@ Job job_of(const SQLite::Statement& row);
 extern const std::string batch_columns;
 /// Nothing if it is damaged.
 std::optional<Batch> batch_of(const SQLite::Statement& row);
-/// What of it is one value.
-std::string pack_content(const Batch& batch);
 
 /// The problem as it was sent; null if it is missing or damaged.
 std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id);

@@ -36,6 +36,17 @@ void LiveSolve::studied(std::size_t done, std::size_t count) {
   study_ = count;
 }
 
+void LiveSolve::follow(const Progress& progress, const std::vector<Iteration>& iterations) {
+  const std::lock_guard lock(mutex_);
+  phase_ = progress.phase;
+  level_ = progress.level;
+  swept_ = progress.swept;
+  sweep_ = progress.sweep;
+  studied_ = progress.studied;
+  study_ = progress.study;
+  history_.insert(history_.end(), iterations.begin(), iterations.end());
+}
+
 Progress LiveSolve::progress() const {
   const std::lock_guard lock(mutex_);
   Progress progress;

@@ -40,6 +40,13 @@ class LiveSolve : public Observer {
 
   void cancel() { cancelled_ = true; }
 
+  /// Ends it at its next check, for somebody else may solve the job by now.
+  void lose() { lost_ = cancelled_ = true; }
+  bool is_lost() const { return lost_; }
+
+  /// Takes over how far a solve is that another process runs, and what it has iterated since the last time.
+  void follow(const Progress& progress, const std::vector<Iteration>& iterations);
+
   Progress progress() const;
   std::vector<Iteration> history() const;
   /// At most so many iterations after the first ones.
@@ -50,7 +57,7 @@ class LiveSolve : public Observer {
 
  private:
   const Time started_;
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<bool> cancelled_ = false, lost_ = false;
   mutable std::mutex mutex_;
   std::optional<Phase> phase_;
   std::optional<Level> level_;

@@ -232,7 +232,7 @@ Batch SqliteStore::add(NewBatch batch) {
     }
     require_places(batch.jobs.size(), owner, batch.jobs.front().share);
     auto row = prepared(writer_, "INSERT INTO batches VALUES (?, ?, ?, ?, ?, ?)", id, owner,
-                        milliseconds(created), batch.key.value_or(""), batch.digest, Blob{content});
+                        to_milliseconds(created), batch.key.value_or(""), batch.digest, Blob{content});
     if (!batch.key) row.bind(4);
     row.exec();
     for (std::size_t i = 0; i < batch.jobs.size(); ++i) insert(batch.jobs[i], packed[i]);
@@ -259,7 +259,7 @@ void SqliteStore::insert(const NewJob& job, const std::string& packed_problem) {
   prepared(writer_,
            "INSERT INTO jobs (id, status, title, created, bytes, trace, owner, tags, batch) "
            "VALUES (?, 'queued', ?, ?, ?, ?, ?, ?, ?)",
-           job.id, job.title, milliseconds(job.created), static_cast<std::int64_t>(packed_problem.size()),
+           job.id, job.title, to_milliseconds(job.created), static_cast<std::int64_t>(packed_problem.size()),
            job.trace, job.owner, pack_list(job.tags), job.batch)
       .exec();
   prepared(writer_, "INSERT INTO problems VALUES (?, ?)", job.id, Blob{packed_problem}).exec();
@@ -320,7 +320,7 @@ std::optional<Claim> SqliteStore::claim() {
       job.status = JobStatus::running;
       job.started = std::chrono::system_clock::now();
       prepared(writer_, "UPDATE jobs SET status = 'running', started = ?, attempt = ? WHERE id = ?",
-               milliseconds(*job.started), attempt, job.id)
+               to_milliseconds(*job.started), attempt, job.id)
           .exec();
       const auto problem = problem_of(writer_, job.id);
       return Claim{std::move(job), problem, static_cast<std::uint64_t>(attempt)};

@@ -60,6 +60,7 @@ struct Claim {
   Job job;
   std::shared_ptr<const std::string> problem;  ///< null if what is stored is damaged
   std::uint64_t attempt = 0;
+  std::optional<double> predicted_memory = {};  ///< as in NewJob, where the store keeps it
 };
 
 /// What is asked for of the jobs, by all that is given.
@@ -85,6 +86,8 @@ enum class Cancellation {
   ended,  ///< it was queued, and is `cancelled` now
   asked,  ///< it runs; it is not queued again whatever happens to its worker
 };
+
+class Fleet;
 
 /// Keeps jobs. Every call is one step that is done as a whole or not at all, whatever other threads call. A
 /// step that has returned is kept as safely as the store keeps anything. Every call may throw
@@ -167,6 +170,9 @@ class JobStore {
 
   /// Whether the jobs are still there when the process has ended.
   virtual bool outlives_process() const = 0;
+
+  /// What its processes tell each other, if several may use the store at the same time; else null.
+  virtual Fleet* fleet() { return nullptr; }
 };
 
 }  // namespace signorini::server

@@ -8,6 +8,7 @@
 
 #include <zstd.h>
 #include <cereal/archives/portable_binary.hpp>
+#include <nlohmann/json.hpp>
 
 #include "server/jobs/stored_members.hpp"
 
@@ -156,6 +157,15 @@ std::string serialized(const Values&... values) {
   return std::move(stream).str();
 }
 
+template <class Value>
+Value deserialized(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  cereal::PortableBinaryInputArchive archive(stream);
+  Value value;
+  archive(value);
+  return value;
+}
+
 /// The values are written twice, first to know how long they are: what they are written to could be as large
 /// as they are.
 template <class... Values>
@@ -186,11 +196,43 @@ std::string pack_verdict(const Verdict& verdict) {
 }
 
 Verdict unpack_verdict(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
-  Verdict verdict;
-  archive(verdict);
-  return verdict;
+  return deserialized<Verdict>(bytes);
+}
+
+std::string pack_list(const std::vector<std::string>& list) {
+  return list.empty() ? "" : nlohmann::json(list).dump();
+}
+
+std::vector<std::string> unpack_list(const std::string& packed) {
+  if (packed.empty()) return {};
+  return nlohmann::json::parse(packed).get<std::vector<std::string>>();
+}
+
+std::string pack_content(const Batch& batch) {
+  return pack_text(nlohmann::json{{"title", batch.title}, {"tags", batch.tags}, {"jobs", batch.jobs}}.dump());
+}
+
+void unpack_content(const std::string& bytes, Batch& batch) {
+  const auto content = nlohmann::json::parse(unpack_text(bytes));
+  content.at("title").get_to(batch.title);
+  content.at("tags").get_to(batch.tags);
+  content.at("jobs").get_to(batch.jobs);
+}
+
+std::string pack_progress(const Progress& progress) {
+  return serialized(progress);
+}
+
+Progress unpack_progress(const std::string& bytes) {
+  return deserialized<Progress>(bytes);
+}
+
+std::string pack_iterations(const std::vector<Iteration>& iterations) {
+  return serialized(iterations);
+}
+
+std::vector<Iteration> unpack_iterations(const std::string& bytes) {
+  return deserialized<std::vector<Iteration>>(bytes);
 }
 
 std::string pack_findings(const Ending& ending) {

@@ -10,7 +10,7 @@
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 
-#include "server/jobs/job.hpp"
+#include "server/jobs/live_solve.hpp"
 
 namespace cereal {
 
@@ -213,6 +213,12 @@ template <class Archive>
 void serialize(Archive& archive, Verdict& verdict) {
   auto& [error, summary, last_iteration] = verdict;
   archive(error, summary, last_iteration);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Progress& progress) {
+  auto& [phase, iteration, residual, level, swept, sweep, studied, study] = progress;
+  archive(phase, iteration, residual, level, swept, sweep, studied, study);
 }
 
 }  // namespace signorini::server

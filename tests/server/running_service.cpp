@@ -6,15 +6,24 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "postgres_server.hpp"
 #include "server/jobs/memory_store.hpp"
+#include "server/jobs/postgres/store.hpp"
 #include "server/jobs/sqlite_store.hpp"
 
 namespace signorini::server {
 
 namespace {
 
+/// Whether tests of the service are to keep jobs in PostgreSQL in place of the memory.
+bool on_postgres() {
+  return std::getenv("SIGNORINI_TEST_POSTGRES") != nullptr;
+}
+
 std::unique_ptr<JobStore> open_store(const ServiceOptions& options) {
   const StoreLimits limits{options.queue_limit, std::size_t{1} << 30, std::chrono::hours(1)};
+  if (options.data_dir.empty() && on_postgres())
+    return std::make_unique<postgres::Store>(empty_database(), limits);
   if (options.data_dir.empty()) return std::make_unique<MemoryStore>(limits);
   return std::make_unique<SqliteStore>(options.data_dir, limits, options.vfs);
 }

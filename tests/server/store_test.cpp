@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "postgres_server.hpp"
 #include "server/jobs/memory_store.hpp"
+#include "server/jobs/postgres/store.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"
@@ -331,16 +333,23 @@ TEST_P(Store, GivesEachJobToOneOfManyThreads) {
   EXPECT_FALSE(store.claim());
 }
 
+std::unique_ptr<JobStore> open_memory(const std::string&, const StoreLimits& limits) {
+  return std::make_unique<MemoryStore>(limits);
+}
+
+std::unique_ptr<JobStore> open_sqlite(const std::string& directory, const StoreLimits& limits) {
+  return std::make_unique<SqliteStore>(directory, limits);
+}
+
+std::unique_ptr<JobStore> open_postgres(const std::string&, const StoreLimits& limits) {
+  return std::make_unique<postgres::Store>(empty_database(), limits);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Store,
-                         testing::Values(StoreKind{"Memory",
-                                                   [](const std::string&, const StoreLimits& limits) {
-                                                     return std::make_unique<MemoryStore>(limits);
-                                                   }},
-                                         StoreKind{
-                                             "Sqlite",
-                                             [](const std::string& directory, const StoreLimits& limits) {
-                                               return std::make_unique<SqliteStore>(directory, limits);
-                                             }}),
+                         testing::Values(StoreKind{"Memory", open_memory}, StoreKind{"Sqlite", open_sqlite}),
+                         [](const auto& kind) { return kind.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(Postgres, Store, testing::Values(StoreKind{"Postgres", open_postgres}),
                          [](const auto& kind) { return kind.param.name; });
 
 }  // namespace

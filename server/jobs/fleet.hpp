@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/jobs/live_solve.hpp"
+#include "server/jobs/store.hpp"
+
+namespace signorini::server {
+
+/// What a worker would run next.
+struct Wish {
+  double memory = std::numeric_limits<double>::infinity();  ///< bytes that the solve may be predicted to take
+};
+
+/// A claim that its runner works on, and how far it is.
+struct Heartbeat {
+  std::string job;
+  std::uint64_t attempt = 0;
+  Progress progress;
+  std::size_t told = 0;               ///< iterations that earlier heartbeats told
+  std::vector<Iteration> iterations;  ///< those since then
+};
+
+/// What has become of a claim.
+enum class Standing {
+  held,
+  to_be_cancelled,  ///< it is held, and somebody wishes its end
+  lost,             ///< somebody else may have the job
+};
+
+/// A job that somebody waits for, and what he knows of it.
+struct Sought {
+  std::string job;
+  std::uint64_t attempt = 0;  ///< the last one that he has seen; 0: none
+  std::size_t known = 0;      ///< its iterations that he has seen
+};
+
+/// A job that was sought. One that is nowhere is not found.
+struct Found {
+  std::string job;
+  JobStatus status = JobStatus::queued;
+  std::uint64_t attempt = 0;  ///< the last one; 0: none
+  std::optional<Time> started;
+  Progress progress;
+  std::vector<Iteration> iterations;  ///< that are not known yet; all, if the attempt is another one
+};
+
+/// What processes with one store tell each other by it. Each claim is a lease: whoever does not renew it
+/// loses it, and the job is claimed by somebody else, under a greater number of attempt. Nothing is accepted
+/// of the loser from then on. Every call may throw StoreUnavailable.
+class Fleet {
+ public:
+  virtual ~Fleet() = default;
+
+  /// As JobStore::claim(), of a job that fits the wish.
+  virtual std::optional<Claim> claim(const Wish& wish) = 0;
+
+  /// How long a claim is held without being renewed.
+  virtual std::chrono::milliseconds lease() const = 0;
+
+  /// Renews claims; what has become of each.
+  virtual std::vector<Standing> renew(std::span<const Heartbeat> heartbeats) = 0;
+
+  /// Takes jobs from runners that have not renewed their lease: they are queued again, or end.
+  virtual void rescue() = 0;
+
+  virtual std::vector<Found> look(std::span<const Sought> sought) const = 0;
+
+  /// Tells the others that there may be something to claim, or to look at. Nobody relies on being told.
+  virtual void hint() = 0;
+
+  /// Waits until somebody hints, or so long. False if nobody did.
+  virtual bool wait_for_hint(std::chrono::milliseconds time) = 0;
+
+  /// How often something was not accepted because it came under a claim that was lost.
+  virtual std::uint64_t stale_writes() const = 0;
+};
+
+}  // namespace signorini::server

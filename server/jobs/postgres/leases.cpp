@@ -1,0 +1,210 @@
+#include "server/jobs/postgres/leases.hpp"
+
+#include <algorithm>
+#include <map>
+#include <thread>
+
+#include <spdlog/spdlog.h>
+
+#include "server/jobs/postgres/rows.hpp"
+#include "server/jobs/stored_form.hpp"
+#include "server/log.hpp"
+
+namespace signorini::server::postgres {
+namespace {
+
+constexpr int attempts_allowed = 3;
+
+Ending attempts_used_up() {
+  Ending ending;
+  ending.error = ProblemDetails{
+      "attempts-used-up", "Services died while they solved the problem",
+      std::to_string(attempts_allowed) +
+          " died or lost the database while this solve ran, and none tries it again. Most often a machine "
+          "has too "
+          "little memory for it (POST /v1/validate estimates it): take a coarser mesh or fewer workers."};
+  return ending;
+}
+
+std::string hexadecimal(const std::string& bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text = "\\x";
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += {digits[byte >> 4], digits[byte & 15]};
+  }
+  return text;
+}
+
+template <class Range, class Projection>
+std::vector<std::string> texts(const Range& range, const Projection& projection) {
+  std::vector<std::string> all;
+  for (const auto& each : range) all.push_back(projection(each));
+  return all;
+}
+
+/// Appends what a piece, which begins behind `first` iterations, has beyond those that are there: after
+/// `known` others.
+void append_piece(const std::vector<Iteration>& piece, std::int64_t first, std::int64_t known,
+                  std::vector<Iteration>& iterations) {
+  const std::int64_t there = known + std::ssize(iterations), skip = there - first;
+  if (skip < 0 || skip >= std::ssize(piece)) return;
+  iterations.insert(iterations.end(), piece.begin() + skip, piece.end());
+}
+
+}  // namespace
+
+std::optional<Claim> Leases::claim(const Wish& wish) {
+  // Who comes at the same time takes the next one. One statement, so that nobody can be stopped within it.
+  static const std::string sql =
+      "WITH next AS (DELETE FROM queue WHERE job = (SELECT job FROM queue WHERE memory <= $2 "
+      "AND (share IS NULL OR queue.memory + (SELECT coalesce(sum(leases.memory), 0) FROM leases WHERE "
+      "leases.owner = queue.owner) "
+      "<= share) ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED) RETURNING job), "
+      "claimed AS (UPDATE jobs SET status = 'running', started = clock_ms(), attempt = attempt + 1 FROM next "
+      "WHERE id = next.job RETURNING " +
+      job_columns +
+      ", attempt, memory), "
+      "lease AS (INSERT INTO leases (job, attempt, until, owner, memory) "
+      "SELECT id, attempt, started + $1::bigint, owner, memory FROM claimed) "
+      "SELECT " +
+      job_columns + ", attempt, text, (memory::bigint) FROM claimed LEFT JOIN problems ON job = id";
+  Rows rows = database_.run(sql, Values(lease_.count(), wish.memory));
+  // Others, who came later, may have taken all that was there when this one looked, but not what they saw
+  // only.
+  for (int again = 0; rows.empty() && again < 3; ++again) {
+    if (database_.run("SELECT FROM queue LIMIT 1").empty()) break;
+    rows = database_.run(sql, Values(lease_.count(), wish.memory));
+  }
+  if (rows.empty()) return std::nullopt;
+  Claim claim{job_of(rows, 0), problem_of(rows.text(0, job_column_count + 1)),
+              static_cast<std::uint64_t>(rows.integer(0, job_column_count)),
+              rows.number(0, job_column_count + 2)};
+  return claim;
+}
+
+std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
+  std::vector<Standing> standings(heartbeats.size(), Standing::lost);
+  if (heartbeats.empty()) return standings;
+  constexpr std::chrono::seconds patience{5};
+  std::map<std::string, std::size_t> places;
+  const auto each = [&](const auto& of) { return texts(heartbeats, of); };
+  for (std::size_t i = 0; i < heartbeats.size(); ++i) places[heartbeats[i].job] = i;
+  const Values values(
+      lease_.count(), each([](const Heartbeat& beat) { return beat.job; }),
+      each([](const Heartbeat& beat) { return std::to_string(beat.attempt); }),
+      each([](const Heartbeat& beat) { return hexadecimal(pack_progress(beat.progress)); }),
+      each([](const Heartbeat& beat) { return std::to_string(beat.told); }),
+      each([](const Heartbeat& beat) { return std::to_string(beat.iterations.size()); }),
+      each([](const Heartbeat& beat) { return hexadecimal(pack_iterations(beat.iterations)); }));
+  static const std::string sql =
+      "WITH beats AS (SELECT * FROM unnest($2::text[], $3::bigint[], $4::bytea[], $5::integer[], "
+      "$6::integer[], "
+      "$7::bytea[]) AS beat (job, attempt, state, told, count, iterations)), "
+      "renewed AS (UPDATE leases SET until = clock_ms() + $1::bigint, state = beats.state FROM beats "
+      "WHERE leases.job = beats.job AND leases.attempt = beats.attempt RETURNING leases.job, cancel_asked), "
+      "told AS (INSERT INTO progress SELECT beats.job, attempt, told, count, iterations FROM beats JOIN "
+      "renewed "
+      "USING (job) WHERE count > 0 ON CONFLICT (job, attempt, first) DO UPDATE SET count = excluded.count, "
+      "iterations = excluded.iterations) "
+      "SELECT beats.job, cancel_asked, jobs.attempt = beats.attempt AND finished IS NOT NULL "
+      "FROM beats LEFT JOIN renewed USING (job) LEFT JOIN jobs ON id = beats.job";
+  // A renewal that a crash of the database forgets is repeated a moment later.
+  const Rows rows = database_.with_own(heart_, patience, "SET synchronous_commit = off",
+                                       [&](Connection& connection) { return connection.run(sql, values); });
+  for (int row = 0; row < rows.size(); ++row) {
+    Standing& standing = standings[places.at(rows.text(row, 0))];
+    if (!rows.is_null(row, 1))
+      standing = rows.boolean(row, 1) ? Standing::to_be_cancelled : Standing::held;
+    else if (rows.is_null(row, 2) || !rows.boolean(row, 2))
+      refuse();  // it has not ended under this claim
+  }
+  return standings;
+}
+
+void Leases::rescue() {
+  static const std::string cancelled =
+      pack_verdict(verdict_of(cancelled_ending("The solve was cancelled before it ended.")));
+  static const std::string used_up = pack_verdict(verdict_of(attempts_used_up()));
+  // Right after a restart of the database nobody has had the time to renew.
+  static const std::string sql =
+      "WITH silent AS (SELECT job FROM leases WHERE until < clock_ms() "
+      "AND pg_postmaster_start_time() < clock_timestamp() - $1::bigint * interval '1 ms' "
+      "LIMIT 100 FOR UPDATE SKIP LOCKED), "
+      "taken AS (DELETE FROM leases USING silent WHERE leases.job = silent.job "
+      "RETURNING leases.job, leases.attempt, cancel_asked), "
+      "judged AS (SELECT id, CASE WHEN cancel_asked THEN 'cancelled' "
+      "WHEN taken.attempt - given_back >= $2::bigint THEN 'failed' ELSE 'queued' END AS verdict "
+      "FROM taken JOIN jobs ON id = taken.job), "
+      "moved AS (UPDATE jobs SET status = judged.verdict, "
+      "started = CASE judged.verdict WHEN 'queued' THEN NULL ELSE started END, "
+      "finished = CASE judged.verdict WHEN 'queued' THEN NULL ELSE clock_ms() END, "
+      "verdict = CASE judged.verdict WHEN 'queued' THEN NULL WHEN 'failed' THEN $4::bytea ELSE $3::bytea END "
+      "FROM judged WHERE jobs.id = judged.id RETURNING jobs.*), "
+      "again AS (INSERT INTO queue SELECT id, turn, owner, batch, memory, share FROM moved WHERE status = "
+      "'queued') "
+      "SELECT id, status FROM moved";
+  const Rows rows =
+      database_.run(sql, Values(lease_.count(), attempts_allowed, Bytes{cancelled}, Bytes{used_up}));
+  for (int row = 0; row < rows.size(); ++row) {
+    const LogField job("job", rows.text(row, 0));
+    spdlog::warn("its runner does not renew its claim; it is {} now", rows.text(row, 1));
+  }
+}
+
+std::vector<Found> Leases::look(std::span<const Sought> sought) const {
+  std::vector<Found> all;
+  const Values values(texts(sought, [](const Sought& each) { return each.job; }),
+                      texts(sought, [](const Sought& each) { return std::to_string(each.attempt); }),
+                      texts(sought, [](const Sought& each) { return std::to_string(each.known); }));
+  static const std::string of_jobs =
+      "SELECT id, status, jobs.attempt, started, state FROM jobs LEFT JOIN leases "
+      "ON leases.job = id AND leases.attempt = jobs.attempt WHERE id = ANY($1::text[])";
+  static const std::string of_iterations =
+      "SELECT progress.job, progress.attempt, first, iterations, known_of_it FROM "
+      "unnest($1::text[], $2::bigint[], $3::integer[]) AS sought (job, attempt, known) "
+      "JOIN jobs ON id = sought.job JOIN progress ON progress.job = id AND progress.attempt = jobs.attempt, "
+      "LATERAL (SELECT CASE jobs.attempt WHEN sought.attempt THEN known ELSE 0 END AS known_of_it) AS "
+      "of_attempt "
+      "WHERE first + count > known_of_it ORDER BY progress.job, first";
+  database_.with([&](Connection& connection) {
+    all.clear();
+    // What has ended by then has all its iterations a moment later.
+    const Rows jobs =
+        connection.run(of_jobs, Values(texts(sought, [](const Sought& each) { return each.job; })));
+    std::map<std::string, std::size_t> places;
+    for (int row = 0; row < jobs.size(); ++row) {
+      Found found;
+      found.job = jobs.text(row, 0);
+      found.status = job_status(jobs.view(row, 1)).value_or(JobStatus::failed);
+      found.attempt = static_cast<std::uint64_t>(jobs.integer(row, 2));
+      found.started = time_of(jobs, row, 3);
+      if (!jobs.is_null(row, 4)) found.progress = unpack_progress(jobs.text(row, 4));
+      places[found.job] = all.size();
+      all.push_back(std::move(found));
+    }
+    const Rows pieces = connection.run(of_iterations, values);
+    for (int row = 0; row < pieces.size(); ++row) {
+      const auto place = places.find(pieces.text(row, 0));
+      if (place == places.end()) continue;
+      Found& found = all[place->second];
+      if (pieces.integer(row, 1) != static_cast<std::int64_t>(found.attempt)) continue;
+      append_piece(unpack_iterations(pieces.text(row, 3)), pieces.integer(row, 2), pieces.integer(row, 4),
+                   found.iterations);
+    }
+    return true;
+  });
+  return all;
+}
+
+void Leases::hint() {
+  database_.run("NOTIFY signorini");
+}
+
+bool Leases::wait_for_hint(std::chrono::milliseconds time) {
+  constexpr std::chrono::seconds patience{5};
+  return database_.with_own(listener_, patience, "LISTEN signorini",
+                            [&](Connection& connection) { return connection.wait_for_notification(time); });
+}
+
+}  // namespace signorini::server::postgres

@@ -1,0 +1,484 @@
+#include "server/jobs/postgres/store.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+
+#include <spdlog/spdlog.h>
+
+#include "server/jobs/postgres/rows.hpp"
+#include "server/jobs/postgres/stored_result.hpp"
+#include "server/jobs/stored_form.hpp"
+#include "server/log.hpp"
+
+namespace signorini::server::postgres {
+namespace {
+
+constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+constexpr const char* unique_violation = "23505";
+
+/// No id has anything else in it. What a client takes for one may be bytes that are no text.
+bool may_be_an_id(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c); });
+}
+
+/// The jobs that are asked for, newest first.
+struct Selection {
+  std::string sql;
+  Values values;  ///< of the query, which must outlive them
+};
+
+ListQuery with_title_in_lower_case(ListQuery query) {
+  if (query.title) query.title = lower_case(*std::move(query.title));
+  return query;
+}
+
+/// The title is in lower case.
+Selection selection(const std::string& columns, const ListQuery& query, std::optional<std::size_t> limit) {
+  Values values;
+  const auto place = [&](const auto& value) {
+    values.add(value);
+    return "$" + std::to_string(values.size());
+  };
+  std::string sql = "SELECT " + columns + " FROM jobs";
+  const std::string owner = query.owner ? " AND owner = " + place(*query.owner) : "";
+  // Tags and titles as bytes, for what a client asks for need not be a text.
+  if (query.tag)
+    sql += " JOIN (SELECT job FROM job_tags WHERE tag = " + place(Bytes{*query.tag}) + owner +
+           ") AS tagged ON job = id";
+  sql += " WHERE true" + owner;
+  if (query.after) sql += std::string(query.tag ? " AND job < " : " AND id < ") + place(*query.after);
+  if (query.status) sql += " AND status = " + place(name(*query.status));
+  if (query.title)
+    sql += " AND position(" + place(Bytes{*query.title}) +
+           R"( IN convert_to(lower(title COLLATE "C"), 'UTF8')) > 0)";
+  sql += query.tag ? " ORDER BY job DESC" : " ORDER BY id DESC";
+  if (limit) sql += " LIMIT " + place(*limit);
+  return {std::move(sql), std::move(values)};
+}
+
+JobCounts counts_in(const Rows& rows) {
+  JobCounts counts;
+  for (int row = 0; row < rows.size(); ++row)
+    counts[job_status(rows.view(row, 0)).value_or(JobStatus::failed)] +=
+        static_cast<std::size_t>(rows.integer(row, 1));
+  return counts;
+}
+
+/// Puts a job into the queue behind the others of its owner: in turns with other owners, whatever they have
+/// queued before.
+void insert(Connection& connection, const NewJob& job, const std::string& packed) {
+  static const std::string sql =
+      "WITH new AS (INSERT INTO jobs (id, status, title, tags, owner, batch, trace, created, memory, share, "
+      "bytes, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, 1 + greatest("
+      "coalesce((SELECT min(turn) FROM queue), 0), coalesce((SELECT max(turn) FROM queue WHERE owner = $4), "
+      "0))) "
+      "RETURNING id, turn, owner, batch, memory, share), "
+      "waiting AS (INSERT INTO queue SELECT * FROM new) "
+      "INSERT INTO problems SELECT id, $11::bytea FROM new";
+  connection.run(sql, Values(job.id, job.title, pack_list(job.tags), job.owner, job.batch, job.trace,
+                             to_milliseconds(job.created), job.predicted_memory, job.share.memory,
+                             packed.size(), Bytes{packed}));
+  if (job.key)
+    connection.run("INSERT INTO idempotency_keys (owner, key, job) VALUES ($1, $2, $3)",
+                   Values(job.owner, *job.key, job.id));
+  if (!job.tags.empty())
+    connection.run(
+        "INSERT INTO job_tags SELECT DISTINCT convert_to(tag, 'UTF8'), $2, $3 FROM unnest($1::text[]) AS tag",
+        Values(job.tags, job.owner, job.id));
+}
+
+}  // namespace
+
+// --- the life of a job
+
+Store::Store(const std::string& url, const StoreLimits& limits, std::chrono::milliseconds lease)
+    : limits_(limits), database_(url), leases_(database_, lease) {}
+
+std::string Store::add(NewJob job) {
+  if (job.key) {
+    if (const auto known = earlier(job.owner, *job.key, *job.problem)) return *known;
+  }
+  require_places(1, job.owner, job.share);
+  const std::string packed = pack_text(*job.problem);
+  try {
+    database_.with([&](Connection& connection) {
+      Transaction transaction(connection);
+      insert(connection, job, packed);
+      transaction.commit();
+      return true;
+    });
+  } catch (const Error& error) {
+    // Somebody else came with the key at the same time.
+    if (error.state != unique_violation || !job.key) throw;
+    if (const auto known = earlier(job.owner, *job.key, *job.problem)) return *known;
+    throw;
+  }
+  return job.id;
+}
+
+Batch Store::add(NewBatch batch) {
+  const auto& [id, title, tags, owner, created, jobs] = batch.batch;
+  if (batch.key) {
+    if (auto known = earlier_batch(owner, *batch.key, batch.digest)) return *std::move(known);
+  }
+  require_places(batch.jobs.size(), owner, batch.jobs.front().share);
+  std::vector<std::string> packed;
+  for (const NewJob& job : batch.jobs) packed.push_back(pack_text(*job.problem));
+  const std::string content = pack_content(batch.batch);
+  try {
+    database_.with([&](Connection& connection) {
+      Transaction transaction(connection);
+      connection.run("INSERT INTO batches VALUES ($1, $2, $3, $4, $5)",
+                     Values(id, owner, to_milliseconds(created), batch.digest, Bytes{content}));
+      if (batch.key)
+        connection.run("INSERT INTO idempotency_keys (owner, key, batch) VALUES ($1, $2, $3)",
+                       Values(owner, *batch.key, id));
+      for (std::size_t i = 0; i < packed.size(); ++i) insert(connection, batch.jobs[i], packed[i]);
+      transaction.commit();
+      return true;
+    });
+  } catch (const Error& error) {
+    if (error.state != unique_violation || !batch.key) throw;
+    if (auto known = earlier_batch(owner, *batch.key, batch.digest)) return *std::move(known);
+    throw;
+  }
+  return batch.batch;
+}
+
+/// Throws QueueFull if no request more may wait, or not so many jobs of the owner. Who comes at the same time
+/// is not seen.
+void Store::require_places(std::size_t jobs, const std::string& owner, const Share& share) const {
+  // There are no more requests than jobs, which are counted already. Those that are alone, and each batch
+  // once.
+  const Rows full = database_.run(
+      "SELECT 1 WHERE (SELECT sum(queued) FROM tallies) >= $1::bigint AND (SELECT count(*) FROM "
+      "(SELECT DISTINCT CASE batch WHEN '' THEN job ELSE batch END FROM queue) AS requests) >= $1::bigint",
+      Values(limits_.queue));
+  if (!full.empty()) throw QueueFull(limits_.queue);
+  if (!share.queue) return;
+  const Rows beyond = database_.run("SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1",
+                                    Values(owner, jobs, *share.queue));
+  if (beyond.boolean(0, 0)) throw QueueFull(*share.queue, true);
+}
+
+std::optional<std::string> Store::earlier(const std::string& owner, const std::string& key,
+                                          const std::string& problem) {
+  const Rows rows = database_.run(
+      "SELECT keys.job, keys.batch, text FROM idempotency_keys AS keys LEFT JOIN problems ON problems.job = "
+      "keys.job "
+      "WHERE owner = $1 AND key = $2",
+      Values(owner, key));
+  if (rows.empty()) return std::nullopt;
+  if (rows.is_null(0, 0)) throw KeyReused(rows.text(0, 1), true);
+  const auto known = problem_of(rows.text(0, 2));
+  if (known && *known != problem) throw KeyReused(rows.text(0, 0));
+  return rows.text(0, 0);
+}
+
+std::optional<Batch> Store::earlier_batch(const std::string& owner, const std::string& key,
+                                          const std::string& digest) {
+  const Rows rows = database_.run(
+      "SELECT id, batches.owner, created, content, digest, keys.job FROM idempotency_keys AS keys "
+      "LEFT JOIN batches ON id = batch WHERE keys.owner = $1 AND key = $2",
+      Values(owner, key));
+  if (rows.empty()) return std::nullopt;
+  if (!rows.is_null(0, 5)) throw KeyReused(rows.text(0, 5));
+  if (rows.view(0, 4) != digest) throw KeyReused(rows.text(0, 0), true);
+  return batch_of(rows, 0);
+}
+
+/// Large results are stored before their job ends, piece by piece, so that nothing waits for them. Each
+/// piece, and the end, must find the claim.
+bool Store::finish(const Claim& claim, const Ending& ending) {
+  const std::string findings = pack_findings(ending);
+  const std::string_view rest = findings;
+  const std::size_t before_last = findings.empty() ? 0 : (findings.size() - 1) / piece_bytes;
+  for (std::size_t piece = 0; piece < before_last; ++piece) {
+    const Rows stored = database_.run(
+        "INSERT INTO results SELECT job, attempt, $3::integer, $4::bytea FROM leases WHERE job = $1 AND "
+        "attempt = $2 "
+        "ON CONFLICT (job, attempt, piece) DO UPDATE SET bytes = excluded.bytes RETURNING 1",
+        Values(claim.job.id, claim.attempt, piece, Bytes{rest.substr(piece * piece_bytes, piece_bytes)}));
+    if (stored.empty()) {
+      leases_.refuse();
+      return false;
+    }
+  }
+  static const std::string sql =
+      "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 RETURNING job), "
+      "ended AS (UPDATE jobs SET status = $3, finished = clock_ms(), verdict = $4, bytes = bytes + $5, "
+      "damaged = $6 FROM held WHERE id = held.job RETURNING id, bytes), "
+      "piece AS (INSERT INTO results SELECT id, $2, $7::integer, $8::bytea FROM ended), "
+      "told AS (INSERT INTO progress SELECT id, $2, 0, $9::integer, $10::bytea FROM ended "
+      "WHERE $9::integer > 0 "
+      "ON CONFLICT (job, attempt, first) DO UPDATE SET count = excluded.count, iterations = "
+      "excluded.iterations), "
+      "stale AS (DELETE FROM results USING ended WHERE job = id AND attempt < $2) "
+      "SELECT bytes FROM ended";
+  const std::string verdict = pack_verdict(verdict_of(ending));
+  const std::vector<Iteration> none;
+  const std::vector<Iteration>& history = ending.history ? *ending.history : none;
+  const std::string iterations = pack_iterations(history);
+  const Rows rows = database_.run(
+      sql, Values(claim.job.id, claim.attempt, name(ending.status), Bytes{verdict}, findings.size(),
+                  is_damaged(ending), before_last, Bytes{rest.substr(before_last * piece_bytes)},
+                  history.size(), Bytes{iterations}));
+  if (rows.empty()) {
+    leases_.refuse();
+    return false;
+  }
+  ended(static_cast<std::size_t>(rows.integer(0, 0)));
+  return true;
+}
+
+bool Store::give_back(const Claim& claim) {
+  const Rows rows = database_.run(
+      "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 AND NOT cancel_asked RETURNING job), "
+      "again AS (UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 FROM held "
+      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share) "
+      "INSERT INTO queue SELECT * FROM again RETURNING job",
+      Values(claim.job.id, claim.attempt));
+  if (!rows.empty()) return true;
+  const Rows held = database_.run("SELECT FROM leases WHERE job = $1 AND attempt = $2",
+                                  Values(claim.job.id, claim.attempt));
+  if (held.empty()) leases_.refuse();
+  return false;
+}
+
+Cancellation Store::cancel(const std::string& id) {
+  const std::string verdict =
+      pack_verdict(verdict_of(cancelled_ending("The solve was cancelled before it began.")));
+  const Rows waiting = database_.run(
+      "WITH taken AS (DELETE FROM queue WHERE job = $1 RETURNING job) "
+      "UPDATE jobs SET status = 'cancelled', finished = clock_ms(), verdict = $2 FROM taken WHERE id = job "
+      "RETURNING bytes",
+      Values(id, Bytes{verdict}));
+  if (!waiting.empty()) {
+    ended(static_cast<std::size_t>(waiting.integer(0, 0)));
+    return Cancellation::ended;
+  }
+  const Rows running =
+      database_.run("UPDATE leases SET cancel_asked = true WHERE job = $1 RETURNING job", Values(id));
+  return running.empty() ? Cancellation::none : Cancellation::asked;
+}
+
+bool Store::remove_ended(const std::string& id) {
+  return remove_ended(std::span(&id, 1)) == 1;
+}
+
+std::size_t Store::remove_ended(std::span<const std::string> ids) {
+  const Rows rows =
+      database_.run("DELETE FROM jobs WHERE id = ANY($1::text[]) AND finished IS NOT NULL RETURNING 1",
+                    Values(std::vector<std::string>(ids.begin(), ids.end())));
+  return static_cast<std::size_t>(rows.size());
+}
+
+// --- what is kept
+
+/// Counts what has ended, and drops what is beyond the limits: when they may be met, and now and then.
+void Store::ended(std::size_t bytes) {
+  constexpr std::chrono::seconds between_sweeps{1};
+  {
+    const std::lock_guard lock(sweep_mutex_);
+    kept_bytes_ += bytes;
+    const bool is_due = std::chrono::steady_clock::now() - swept_ >= between_sweeps;
+    if (!is_due && kept_bytes_ <= limits_.keep_bytes) return;
+  }
+  try {
+    drop_beyond_limits();
+  } catch (const StoreUnavailable&) {
+    // The job has ended all the same.
+  }
+}
+
+void Store::tidy() {
+  ended(0);
+}
+
+/// One of those who share the database does it at a time, and a little at once.
+void Store::drop_beyond_limits() {
+  const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(limits_.keep).count();
+  static const std::string sql =
+      "WITH oldest AS (SELECT id, finished, bytes, sum(bytes) OVER (ORDER BY finished, id) AS with_older, "
+      "lead(id) OVER (ORDER BY finished, id) IS NULL AS is_last FROM "
+      "(SELECT id, finished, bytes FROM jobs WHERE finished IS NOT NULL ORDER BY finished, id LIMIT 101) AS "
+      "ended), "
+      "kept AS (SELECT sum(ended_bytes) AS bytes FROM tallies), "
+      "gone AS (DELETE FROM jobs USING oldest, kept WHERE jobs.id = oldest.id AND "
+      "(oldest.finished < clock_ms() - $1::bigint OR "
+      "(kept.bytes - with_older + oldest.bytes > $2::bigint AND NOT is_last)) RETURNING jobs.id, jobs.bytes) "
+      "SELECT id, bytes, (SELECT bytes FROM kept)::bigint FROM gone "
+      "UNION ALL SELECT NULL, 0, bytes::bigint FROM kept";
+  database_.with([&](Connection& connection) {
+    Transaction transaction(connection);
+    const Rows chosen =
+        connection.run("SELECT pg_try_advisory_xact_lock(hashtext(current_schema() || ' sweep'))");
+    if (!chosen.boolean(0, 0)) return true;
+    const Rows rows = connection.run(sql, Values(age, limits_.keep_bytes));
+    // Whoever followed a solve has seen its last iterations by then; they are in its result too.
+    connection.run(
+        "DELETE FROM progress WHERE job IN (SELECT job FROM progress JOIN jobs ON id = job "
+        "WHERE finished < clock_ms() - 60000 LIMIT 5000)");
+    transaction.commit();
+    std::size_t kept = 0;
+    for (int row = 0; row < rows.size(); ++row) {
+      if (rows.is_null(row, 0)) {
+        kept += static_cast<std::size_t>(rows.integer(row, 2));
+        continue;
+      }
+      const LogField job("job", rows.text(row, 0));
+      spdlog::info("dropped bytes={}", rows.integer(row, 1));
+      kept -= static_cast<std::size_t>(rows.integer(row, 1));
+    }
+    const std::lock_guard lock(sweep_mutex_);
+    kept_bytes_ = kept;
+    swept_ = std::chrono::steady_clock::now();
+    return true;
+  });
+}
+
+// --- readers
+
+std::optional<Job> Store::find(const std::string& id) const {
+  if (!may_be_an_id(id)) return std::nullopt;
+  const Rows rows = database_.run("SELECT " + job_columns + " FROM jobs WHERE id = $1", Values(id));
+  if (rows.empty()) return std::nullopt;
+  return job_of(rows, 0);
+}
+
+JobPage Store::list(const ListQuery& asked) const {
+  const ListQuery query = with_title_in_lower_case(asked);
+  const Selection selected = selection(job_columns, query, query.limit + 1);
+  const Rows rows = database_.run(selected.sql, selected.values);
+  JobPage page;
+  for (int row = 0; row < rows.size(); ++row) page.jobs.push_back(job_of(rows, row));
+  page.more = page.jobs.size() > query.limit;
+  if (page.more) page.jobs.pop_back();
+  return page;
+}
+
+std::vector<std::string> Store::ids(const ListQuery& asked) const {
+  const ListQuery query = with_title_in_lower_case(asked);
+  const Selection selected = selection("id", query, std::nullopt);
+  const Rows rows = database_.run(selected.sql, selected.values);
+  std::vector<std::string> ids;
+  for (int row = 0; row < rows.size(); ++row) ids.push_back(rows.text(row, 0));
+  return ids;
+}
+
+JobCounts Store::count() const {
+  JobCounts counts = counts_in(database_.run(
+      "SELECT status, sum(number)::bigint FROM tallies, LATERAL (VALUES ('queued', queued), "
+      "('running', running), ('succeeded', succeeded), ('failed', failed), ('cancelled', cancelled)) "
+      "AS each (status, number) GROUP BY status"));
+  std::erase_if(counts, [](const auto& each) { return each.second == 0; });
+  return counts;
+}
+
+std::optional<Batch> Store::find_batch(const std::string& id) const {
+  if (!may_be_an_id(id)) return std::nullopt;
+  const Rows rows =
+      database_.run("SELECT " + batch_columns +
+                        " FROM batches WHERE id = $1 AND EXISTS (SELECT FROM jobs WHERE batch = $1)",
+                    Values(id));
+  if (rows.empty()) return std::nullopt;
+  return batch_of(rows, 0);
+}
+
+JobCounts Store::count_of_batch(const std::string& id) const {
+  return counts_in(database_.run(
+      "SELECT status, count(*) FROM jobs WHERE batch <> '' AND batch = $1 GROUP BY status", Values(id)));
+}
+
+BatchEnds Store::ends_of_batch(const std::string& id, std::int64_t since) const {
+  // One that ended earlier than another may be seen later: as late as a statement may take.
+  constexpr std::int64_t longest_statement = 20'000;
+  const Rows rows = database_.run(
+      "SELECT id, finished FROM jobs WHERE batch <> '' AND batch = $1 AND (finished IS NULL OR finished >= "
+      "$2) "
+      "ORDER BY finished NULLS LAST, id",
+      Values(id, since));
+  BatchEnds ends;
+  ends.latest = since;
+  for (int row = 0; row < rows.size(); ++row) {
+    if (rows.is_null(row, 1)) {
+      ends.all = false;
+      break;
+    }
+    ends.jobs.push_back(rows.text(row, 0));
+    ends.latest = std::max(since, rows.integer(row, 1) - longest_statement);
+  }
+  return ends;
+}
+
+std::optional<JobResult> Store::result(const std::string& id) {
+  const std::optional<Job> job = find(id);
+  if (!job) return std::nullopt;
+  const bool has_result = job->verdict.summary || job->verdict.last_iteration;
+  return database_.with([&](Connection& connection) -> std::optional<JobResult> {
+    const char* damaged = nullptr;
+    JobResult result;
+    {
+      // All from one state of the database.
+      Transaction transaction(connection, "REPEATABLE READ READ ONLY");
+      const Rows rows = connection.run("SELECT text FROM problems WHERE job = $1", Values(id));
+      if (!rows.empty()) result.problem = problem_of(rows.text(0, 0));
+      StoredResult bytes(connection, id);
+      try {
+        if (!result.problem) {
+          damaged = "problem";
+        } else if (bytes.size() > 0) {
+          unpack_findings(std::bind_front(&StoredResult::read, &bytes), result);
+        } else if (has_result) {
+          damaged = "result";
+        }
+      } catch (const Error&) {
+        throw;
+      } catch (const std::runtime_error&) {
+        damaged = "result";
+      }
+      transaction.commit();
+    }
+    if (damaged == nullptr) return result;
+    return damaged_result(connection, id, damaged);
+  });
+}
+
+std::size_t Store::result_memory(const std::string& id) const {
+  return database_.with([&](Connection& connection) -> std::size_t {
+    StoredResult bytes(connection, id);
+    if (bytes.size() == 0) return 0;
+    try {
+      return unpacked_size(std::bind_front(&StoredResult::read, &bytes));
+    } catch (const Error&) {
+      throw;
+    } catch (const std::runtime_error&) {
+      return 0;  // the result will turn out to be damaged
+    }
+  });
+}
+
+/// Nothing if the job was removed meanwhile.
+std::optional<JobResult> Store::damaged_result(Connection& connection, const std::string& id,
+                                               const std::string& what) {
+  const std::string verdict = pack_verdict(verdict_of(damaged_ending(what)));
+  // A worker that has it finds out by itself.
+  const Rows failed = connection.run(
+      "UPDATE jobs SET status = 'failed', verdict = $2, damaged = true WHERE id = $1 AND finished IS NOT "
+      "NULL "
+      "AND NOT damaged RETURNING id",
+      Values(id, Bytes{verdict}));
+  if (!failed.empty()) {
+    const LogField job("job", id);
+    spdlog::error("failed kind=damaged: its {} is not what was written", what);
+  }
+  if (connection.run("SELECT 1 FROM jobs WHERE id = $1", Values(id)).empty()) return std::nullopt;
+  return JobResult{std::make_shared<const std::string>("null"), nullptr, nullptr};
+}
+
+std::size_t Store::damaged() const {
+  return static_cast<std::size_t>(database_.run("SELECT sum(damaged)::bigint FROM tallies").integer(0, 0));
+}
+
+}  // namespace signorini::server::postgres

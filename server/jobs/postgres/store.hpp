@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "server/jobs/fleet.hpp"
+#include "server/jobs/postgres/database.hpp"
+#include "server/jobs/postgres/leases.hpp"
+#include "server/jobs/store.hpp"
+
+namespace signorini::server::postgres {
+
+/// Jobs in a PostgreSQL database, which several processes may share. A step that has returned is kept as
+/// safely as the database keeps anything; where the connection breaks off as it is committed,
+/// StoreUnavailable may be thrown for one that is done. What has ended is counted with the bytes that its
+/// problem and result take, compressed.
+class Store : public JobStore {
+ public:
+  /// `url` is postgresql://…; a claim is held for so long without being renewed. Throws CannotOpenStore.
+  Store(const std::string& url, const StoreLimits& limits,
+        std::chrono::milliseconds lease = std::chrono::seconds(10));
+
+  std::string add(NewJob job) override;
+  std::optional<std::string> earlier(const std::string& owner, const std::string& key,
+                                     const std::string& problem) override;
+  Batch add(NewBatch batch) override;
+  std::optional<Batch> earlier_batch(const std::string& owner, const std::string& key,
+                                     const std::string& digest) override;
+  std::optional<Claim> claim() override { return leases_.claim({}); }
+  bool finish(const Claim& claim, const Ending& ending) override;
+  bool give_back(const Claim& claim) override;
+  Cancellation cancel(const std::string& id) override;
+  bool remove_ended(const std::string& id) override;
+  std::size_t remove_ended(std::span<const std::string> ids) override;
+  void tidy() override;
+  std::optional<Job> find(const std::string& id) const override;
+  JobPage list(const ListQuery& query) const override;
+  std::vector<std::string> ids(const ListQuery& query) const override;
+  JobCounts count() const override;
+  std::optional<Batch> find_batch(const std::string& id) const override;
+  JobCounts count_of_batch(const std::string& id) const override;
+  BatchEnds ends_of_batch(const std::string& id, std::int64_t since) const override;
+  std::optional<JobResult> result(const std::string& id) override;
+  std::size_t result_memory(const std::string& id) const override;
+  std::size_t damaged() const override;
+  std::optional<std::string> trouble() override { return database_.trouble(); }
+  bool outlives_process() const override { return true; }
+  Fleet* fleet() override { return &leases_; }
+
+ private:
+  void require_places(std::size_t jobs, const std::string& owner, const Share& share) const;
+  static std::optional<JobResult> damaged_result(Connection& connection, const std::string& id,
+                                                 const std::string& what);
+  void ended(std::size_t bytes);
+  void drop_beyond_limits();
+
+  const StoreLimits limits_;
+  const Database database_;
+  Leases leases_;
+
+  std::mutex sweep_mutex_;
+  std::chrono::steady_clock::time_point swept_{};
+  std::size_t kept_bytes_ =
+      0;  ///< of what has ended, as was counted last, and what has ended here since then
+};
+
+}  // namespace signorini::server::postgres

@@ -1,0 +1,108 @@
+#include "postgres_server.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "server/jobs/postgres/connection.hpp"
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Starts a program of PostgreSQL, which does not run as root.
+pid_t spawn(const std::vector<std::string>& command, const std::string& log) {
+  std::vector<std::string> words{"setpriv", "--pdeathsig", "INT"};
+  if (::getuid() == 0) words.insert(words.end(), {"--reuid=postgres", "--regid=postgres", "--clear-groups"});
+  words.insert(words.end(), command.begin(), command.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, 1, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+  posix_spawn_file_actions_adddup2(&files, 1, 2);
+  pid_t pid = -1;
+  const int code = posix_spawnp(&pid, argv[0], &files, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (code != 0) throw std::runtime_error("cannot start " + command.front());
+  return pid;
+}
+
+const std::string programs = POSTGRES_PROGRAMS;
+
+}  // namespace
+
+PostgresServer::PostgresServer() : directory_("/tmp/postgres-XXXXXX") {
+  if (::mkdtemp(directory_.data()) == nullptr) throw std::runtime_error("cannot make " + directory_);
+  if (const passwd* const user = ::getuid() == 0 ? ::getpwnam("postgres") : nullptr)
+    if (::chown(directory_.c_str(), user->pw_uid, user->pw_gid) != 0)
+      throw std::runtime_error("cannot give away " + directory_);
+  int status = 0;
+  const pid_t maker = spawn({programs + "/initdb", "--auth=trust", "--username=signorini", "--encoding=UTF8",
+                             "--locale=C", "--no-sync", directory_ + "/data"},
+                            directory_ + "/log");
+  if (::waitpid(maker, &status, 0) != maker || status != 0)
+    throw std::runtime_error("initdb failed; see " + directory_ + "/log");
+  start();
+}
+
+PostgresServer::~PostgresServer() {
+  end(SIGQUIT);
+  std::filesystem::remove_all(directory_);
+}
+
+std::string PostgresServer::url(const std::string& database) const {
+  return "postgresql://signorini@/" + database + "?host=" + directory_;
+}
+
+std::string PostgresServer::new_database(const std::string& name) {
+  postgres::Connection(url("postgres"), 10s).script("CREATE DATABASE " + name);
+  return url(name);
+}
+
+void PostgresServer::start() {
+  pid_ = spawn({programs + "/postgres", "-D", directory_ + "/data", "-k", directory_, "-c",
+                "listen_addresses=", "-c", "shared_buffers=32MB", "-c", "max_connections=100"},
+               directory_ + "/log");
+  for (int i = 0; i < 1000; ++i) {
+    try {
+      const postgres::Connection connection(url("postgres"), 10s);
+      return;
+    } catch (const postgres::Error&) {
+      std::this_thread::sleep_for(20ms);
+    }
+  }
+  throw std::runtime_error("PostgreSQL did not start; see " + directory_ + "/log");
+}
+
+void PostgresServer::end(int signal) {
+  if (pid_ < 0) return;
+  ::kill(pid_, signal);
+  ::waitpid(pid_, nullptr, 0);
+  pid_ = -1;
+}
+
+PostgresServer& shared_postgres() {
+  static PostgresServer server;
+  return server;
+}
+
+std::string empty_database() {
+  static std::atomic<int> made = 0;
+  return shared_postgres().new_database("store_" + std::to_string(++made));
+}
+
+}  // namespace signorini::server
