@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "server/exit_code.hpp"
+#include "server/jobs/postgres/url.hpp"
 
 namespace signorini::server {
 namespace {
@@ -72,6 +73,34 @@ class FactorizationFlag {
   std::string value_ = "multifrontal", of_command_;
 };
 
+/// What a service of a fleet does.
+class RoleFlag {
+ public:
+  void add_to(CLI::App& app) {
+    add_flag(app, "--role", value_,
+             "What a service with a database does: all, front (HTTP only), or worker (solves only)")
+        ->check(CLI::IsMember({"all", "front", "worker"}));
+  }
+
+  Role value() const {
+    if (value_ == "front") return Role::front;
+    return value_ == "worker" ? Role::worker : Role::all;
+  }
+
+ private:
+  std::string value_ = "all";
+};
+
+/// Of a configuration that cannot be meant. Throws CLI::ValidationError.
+void require_one_store(const DaemonConfig& daemon) {
+  const bool has_directory = daemon.data_dir != DaemonConfig().data_dir;
+  if (has_directory && !daemon.database.empty())
+    throw CLI::ValidationError("--database", "is given beside --data-dir (" + daemon.data_dir +
+                                                 "); solves are kept in one of the two");
+  if (daemon.role != Role::all && daemon.database.empty())
+    throw CLI::ValidationError("--role", "needs --database, by which services share their solves");
+}
+
 /// A number of bytes with an optional unit: 1048576, 1024kb, 1mb.
 void take_bytes(CLI::Option* option, std::size_t low) {
   option->transform(CLI::AsSizeValue(false));
@@ -106,6 +135,18 @@ void add_daemon_flags(CLI::App& app, DaemonConfig& daemon) {
   add_flag(app, "--data-dir", daemon.data_dir, "Directory where solves are kept; :memory: keeps nothing")
       ->check(
           CLI::Validator([](const std::string& value) { return value.empty() ? "is empty" : ""; }, "DIR"));
+  add_flag(app, "--database", daemon.database,
+           "PostgreSQL database where solves are kept in place of a directory, for several services: "
+           "postgresql://…")
+      ->check(CLI::Validator(
+          [](const std::string& value) {
+            const bool is_url = value.starts_with("postgresql://") || value.starts_with("postgres://");
+            return value.empty() || is_url ? "" : "is no URL postgresql://USER@HOST/NAME";
+          },
+          "URL"));
+  add_flag(app, "--lease-seconds", daemon.lease_seconds,
+           "A service of a database that is silent for so long loses its solves to others")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{3600}));
   add_flag(app, "--queue-limit", daemon.queue_limit,
            "Requests that may wait, a batch being one; more are refused with 503")
       ->check(CLI::Range(1, 100000));
@@ -211,6 +252,8 @@ CommandLine read_command_line(int argc, const char* const* argv) {
       ->check(CLI::IsMember({"text", "json"}));
   add_daemon_flags(app, line.config.daemon);
   factorization.add_to(app);
+  RoleFlag role;
+  role.add_to(app);
   StudyConfig study;
   CLI::App* const solve_command = add_solve(app, solve);
   CLI::App* const study_command = add_study(app, study);
@@ -222,12 +265,14 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
     line.config.daemon.factorization = solve.factorization = study.factorization = factorization.value();
+    line.config.daemon.role = role.value();
+    require_one_store(line.config.daemon);
     if (solve_command->parsed()) line.config.solve = solve;
     if (study_command->parsed()) line.config.study = study;
     if (check_command->parsed()) line.config.check = check;
     line.config.health = health_command->parsed();
     if (print_config) {
-      std::cout << app.config_to_str(true, true);
+      std::cout << postgres::without_password(app.config_to_str(true, true));
       line.exit_code = exit_done;
     }
   } catch (const CLI::ParseError& error) {

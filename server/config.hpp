@@ -10,12 +10,18 @@
 
 namespace signorini::server {
 
+/// What one process of a fleet does: all of it, the HTTP alone, or the solves alone.
+enum class Role { all, front, worker };
+
 /// `signorinid`: every flag with its default; each is also read from SIGNORINI_<FLAG>, and from a file.
 struct DaemonConfig {
   std::string host = "127.0.0.1";
   int port = 8080;
   int workers = 2;
   std::string data_dir = "./data";
+  std::string database;  ///< postgresql://…, in place of a directory; empty: none
+  std::int64_t lease_seconds = 10;
+  Role role = Role::all;
   std::size_t queue_limit = 64;
   std::size_t keep_bytes = std::size_t{1} << 30;
   std::int64_t keep_seconds = 7 * 24 * 3600;

@@ -15,6 +15,7 @@
 #include "server/http/listener.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/memory_store.hpp"
+#include "server/jobs/postgres/store.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/signals.hpp"
@@ -37,6 +38,9 @@ std::string url(const std::string& host, int port) {
 
 std::unique_ptr<JobStore> open_store(const DaemonConfig& config) {
   const StoreLimits limits{config.queue_limit, config.keep_bytes, std::chrono::seconds(config.keep_seconds)};
+  if (!config.database.empty())
+    return std::make_unique<postgres::Store>(config.database, limits,
+                                             std::chrono::seconds(config.lease_seconds));
   if (config.data_dir == ":memory:") return std::make_unique<MemoryStore>(limits);
   return std::make_unique<SqliteStore>(config.data_dir, limits);
 }
@@ -120,13 +124,14 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
   };
   const auto ended = [&metrics](const Job& job, const Ending& ending) { metrics.ended(job, ending); };
   const auto max_memory = static_cast<double>(config.max_memory);
-  Scheduler scheduler(*store, solve, config.workers, max_memory, ended, config.factorization);
+  const int workers = config.role == Role::front ? 0 : config.workers;
+  Scheduler scheduler(*store, solve, workers, max_memory, ended, config.factorization);
   EventStreams events(config.max_subscribers);
   Access access = access_of(config);
   Limits limits{config.max_body_bytes, config.max_unknowns, max_memory};
   limits.factorization = config.factorization;
   Service service{*store, scheduler, events, access, limits, operators, metrics};
-  const Router router = routes(service);
+  const Router router = config.role == Role::worker ? routes_of_worker(service) : routes(service);
   Listener listener(listener_options(config), router);
   listener.start([&failed] {
     failed = true;

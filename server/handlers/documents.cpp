@@ -108,10 +108,12 @@ void write_status(DocumentWriter& out, const Job& job, const LiveSolve* live) {
   out.end_object();
 }
 
-void write_list(DocumentWriter& out, const JobPage& page, const ListQuery& query,
-                const Scheduler& scheduler) {
+void write_list(DocumentWriter& out, const JobPage& page, const ListQuery& query, const LiveSolves& lives) {
   out.begin_object().key("solves").begin_array();
-  for (const Job& job : page.jobs) write_status(out, job, scheduler.live(job.id).get());
+  for (const Job& job : page.jobs) {
+    const auto live = lives.find(job.id);
+    write_status(out, job, live == lives.end() ? nullptr : live->second.get());
+  }
   out.end_array().key("links").begin_object();
   member(out, "next", link_to_next(page, query));
   out.end_object().end_object();

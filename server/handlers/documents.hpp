@@ -22,7 +22,7 @@ void write_status(api::DocumentWriter& out, const Job& job, const LiveSolve* liv
 
 /// The status documents of a page, and the link to the next one.
 void write_list(api::DocumentWriter& out, const JobPage& page, const ListQuery& query,
-                const Scheduler& scheduler);
+                const LiveSolves& lives);
 
 /// The residual history of a job with this status, so far.
 void write_history_so_far(api::DocumentWriter& out, JobStatus status, const std::vector<Iteration>& history);

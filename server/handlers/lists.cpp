@@ -73,9 +73,11 @@ HttpError not_confirmed(const std::string& tag, std::size_t count) {
 
 Response list_solves(Service& service, const Request& request) {
   const ListQuery query = list_query(request);
-  return document_response(request, 200,
-                           [&scheduler = service.scheduler, page = service.store.list(query),
-                            query](api::DocumentWriter& out) { write_list(out, page, query, scheduler); });
+  const JobPage page = service.store.list(query);
+  return document_response(
+      request, 200, [lives = service.scheduler.live(page.jobs), page, query](api::DocumentWriter& out) {
+        write_list(out, page, query, lives);
+      });
 }
 
 bool asks_for_many(const Query& query) {

@@ -3,6 +3,7 @@
 #include <prometheus/text_serializer.h>
 
 #include "server/http/query.hpp"
+#include "server/jobs/fleet.hpp"
 #include "server/metrics/families.hpp"
 
 namespace signorini::server {
@@ -27,6 +28,12 @@ Families solve_families(const JobStore& store) {
                 samples),
           gauge("signorini_damaged_solves", "Failed solves of which what is stored is damaged.",
                 {{static_cast<double>(damaged)}})};
+}
+
+Families fleet_families(Fleet& fleet) {
+  return {counter("signorini_stale_writes_total",
+                  "Writes that were refused because the claim of the solve was lost to another service.",
+                  {{static_cast<double>(fleet.stale_writes())}})};
 }
 
 Families operator_families(const OperatorFigures& figures) {
@@ -63,6 +70,7 @@ Response get_metrics(Service& service, const Request& request) {
       gauge("signorini_build_info", "Which version runs.", {{1, "version", SIGNORINI_VERSION}}),
       gauge("signorini_ready", "1 if new solves are taken, as /readyz says.", {{ready ? 1. : 0.}})};
   append(families, solve_families(service.store));
+  if (Fleet* const fleet = service.store.fleet()) append(families, fleet_families(*fleet));
   append(families, operator_families(service.operators.figures()));
   append(families, service.metrics.collect());
   append(families, client_families(service));

@@ -1,5 +1,8 @@
 #include "server/handlers/routes.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "server/handlers/batches.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/downloads.hpp"
@@ -16,10 +19,37 @@
 
 namespace signorini::server {
 
+namespace {
+
+using Handle = Response (*)(Service& service, const Request& request);
+
+Handler bound(Service& service, Handle handle) {
+  return [&service, handle](const Request& request) { return handle(service, request); };
+}
+
+/// Probes send whatever Accept they like.
+std::vector<Route> routes_of_watchers(Service& service) {
+  return {{"GET", "/healthz", {}, bound(service, healthz), Audience::probes},
+          {"GET", "/readyz", {}, bound(service, readyz), Audience::probes},
+          {"GET", "/metrics", {}, bound(service, get_metrics), Audience::monitors}};
+}
+
+Router router_of(std::vector<Route> table, Service& service) {
+  return {std::move(table), service.access,
+          [&metrics = service.metrics](const Request& request, const Response& response,
+                                       std::chrono::duration<double> time) {
+            metrics.replied(request, response, time);
+          }};
+}
+
+}  // namespace
+
+Router routes_of_worker(Service& service) {
+  return router_of(routes_of_watchers(service), service);
+}
+
 Router routes(Service& service) {
-  const auto with = [&service](Response (*handle)(Service&, const Request&)) -> Handler {
-    return [&service, handle](const Request& request) { return handle(service, request); };
-  };
+  const auto with = [&service](Handle handle) { return bound(service, handle); };
   // What is made of a whole result may be read, written and compressed for seconds.
   const auto has_result = [](const Query& query) { return !picks_summary_alone(query); };
   const auto long_reply = [&](const std::string& pattern, std::vector<std::string> media_types,
@@ -68,10 +98,6 @@ Router routes(Service& service) {
        {svg_media_type},
        with(get_example_picture),
        Audience::everybody},
-      // Probes send whatever Accept they like.
-      {"GET", "/healthz", {}, with(healthz), Audience::probes},
-      {"GET", "/readyz", {}, with(readyz), Audience::probes},
-      {"GET", "/metrics", {}, with(get_metrics), Audience::monitors},
       {"GET", "/openapi.json", {"application/json"}, with(get_openapi), Audience::everybody},
       {"GET", "/", {"text/html"}, page_of("Signorini", "start", "start"), Audience::everybody},
       {"GET",
@@ -82,11 +108,8 @@ Router routes(Service& service) {
       // Browsers ask for a style or script by what it is for, and may name neither type.
       {"GET", "/pages/{file}", {}, with(get_page_file), Audience::everybody},
   };
-  return {std::move(table), service.access,
-          [&metrics = service.metrics](const Request& request, const Response& response,
-                                       std::chrono::duration<double> time) {
-            metrics.replied(request, response, time);
-          }};
+  std::ranges::move(routes_of_watchers(service), std::back_inserter(table));
+  return router_of(std::move(table), service);
 }
 
 }  // namespace signorini::server

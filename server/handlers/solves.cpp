@@ -29,9 +29,10 @@ Response job_response(Service& service, const Request& request, int status, JobW
 }
 
 Response status_response(Service& service, const Request& request, int status, Job job) {
-  const auto live = service.scheduler.live(job.id);
+  const LiveSolves lives = service.scheduler.live(std::span(&job, 1));
   return job_response(service, request, status, {std::move(job), {}},
-                      [live](api::DocumentWriter& out, const JobWithResult& about) {
+                      [live = lives.empty() ? nullptr : lives.begin()->second](api::DocumentWriter& out,
+                                                                               const JobWithResult& about) {
                         write_status(out, about.job, live.get());
                       });
 }

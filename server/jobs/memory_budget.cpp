@@ -34,9 +34,21 @@ void MemoryBudget::admit(const std::string& job, double bytes, const std::string
   throw full(bytes, of_owner, *share, " of `" + owner + "`", "memory= in the token file");
 }
 
+void MemoryBudget::require_alone(double bytes, const std::string& owner,
+                                 const std::optional<double>& share) const {
+  if (bytes > max_bytes_) throw full(bytes, bytes, max_bytes_, "", "--max-memory");
+  if (share && bytes > *share)
+    throw full(bytes, bytes, *share, " of `" + owner + "`", "memory= in the token file");
+}
+
 void MemoryBudget::add(const std::string& job, double bytes, const std::string& owner) {
   const std::lock_guard lock(mutex_);
   taken_[job] = {bytes, owner};
+}
+
+double MemoryBudget::left() const {
+  const std::lock_guard lock(mutex_);
+  return max_bytes_ - largest();
 }
 
 double MemoryBudget::left_for(const std::string& job) const {

@@ -25,8 +25,14 @@ class MemoryBudget {
   void admit(const std::string& job, double bytes, const std::string& owner = {},
              const std::optional<double>& share = std::nullopt);
 
+  /// Throws MemoryFull if a job takes more by itself than there is for anybody, or for its owner.
+  void require_alone(double bytes, const std::string& owner, const std::optional<double>& share) const;
+
   /// Counts a job that was admitted elsewhere.
   void add(const std::string& job, double bytes, const std::string& owner = {});
+
+  /// What one job more may take that begins at once.
+  double left() const;
 
   /// What the job may take, with what the largest of the others leave; more than it was predicted to.
   double left_for(const std::string& job) const;

@@ -61,12 +61,17 @@ void log_end(const Claim& claim, const Ending& ending) {
 Scheduler::Scheduler(JobStore& store, SolveFunction solve, int workers, double max_memory,
                      EndObserver observer, Factorization by)
     : store_(store),
+      fleet_(store.fleet()),
       solve_(std::move(solve)),
       observer_(std::move(observer)),
       by_(by),
       memory_(max_memory, static_cast<std::size_t>(workers)),
       working_(threads_for(workers)),
       places_(workers) {
+  if (fleet_ != nullptr) {
+    heart_.emplace(*fleet_, [this] { return held(); });
+    lookout_.emplace(*fleet_, ears());
+  }
   for (int i = 0; i < threads_for(workers); ++i) threads_.emplace_back(&Scheduler::work, this);
 }
 
@@ -83,7 +88,7 @@ std::string Scheduler::submit(NewJob job) {
   const std::shared_lock admitted(admission_);
   if (!accepting()) throw Stopping();
   const std::string new_id = job.id;
-  memory_.admit(new_id, job.predicted_memory, job.owner, job.share.memory);
+  admit(job);
   std::string id;
   try {
     id = store_.add(std::move(job));
@@ -94,6 +99,15 @@ std::string Scheduler::submit(NewJob job) {
   if (id != new_id) memory_.release(new_id);
   announce_submission();
   return id;
+}
+
+/// Throws MemoryFull. In a fleet it is not known which of its processes will run the job, and when: it waits
+/// until one has room for it.
+void Scheduler::admit(const NewJob& job) {
+  if (fleet_ != nullptr)
+    memory_.require_alone(job.predicted_memory, job.owner, job.share.memory);
+  else
+    memory_.admit(job.id, job.predicted_memory, job.owner, job.share.memory);
 }
 
 Batch Scheduler::submit(NewBatch batch) {
@@ -108,8 +122,7 @@ Batch Scheduler::submit(NewBatch batch) {
     for (const std::string& id : jobs) memory_.release(id);
   };
   try {
-    for (const NewJob& job : batch.jobs)
-      memory_.admit(job.id, job.predicted_memory, job.owner, job.share.memory);
+    for (const NewJob& job : batch.jobs) admit(job);
     const std::string new_id = batch.batch.id;
     Batch accepted = store_.add(std::move(batch));
     if (accepted.id != new_id) release();
@@ -127,6 +140,7 @@ void Scheduler::announce_submission() {
     ++submissions_;
   }
   queued_.notify_all();
+  if (lookout_) lookout_->hint();
 }
 
 std::shared_ptr<const Watch> Scheduler::watch(const std::string& id) {
@@ -171,14 +185,84 @@ std::optional<Dismissal> Scheduler::try_to_cancel(const std::string& id) {
     spdlog::info("cancelled while queued");
     return Dismissal::cancelled;
   }
-  if (cancellation == Cancellation::asked && cancel_live(id)) return Dismissal::cancelling;
-  return std::nullopt;
+  // Who runs it elsewhere sees it when he renews his claim.
+  const bool hears = cancellation == Cancellation::asked && (cancel_live(id) || fleet_ != nullptr);
+  return hears ? std::optional(Dismissal::cancelling) : std::nullopt;
 }
 
 std::shared_ptr<const LiveSolve> Scheduler::live(const std::string& id) const {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = running_.find(id);
+    if (found != running_.end()) return found->second.live;
+  }
+  if (fleet_ == nullptr) return nullptr;
+  const LiveSolves elsewhere = look_elsewhere({id});
+  return elsewhere.empty() ? nullptr : elsewhere.begin()->second;
+}
+
+LiveSolves Scheduler::live(std::span<const Job> jobs) const {
+  LiveSolves lives;
+  std::vector<std::string> elsewhere;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Job& job : jobs) {
+      const auto found = running_.find(job.id);
+      if (found != running_.end())
+        lives[job.id] = found->second.live;
+      else if (job.status == JobStatus::running)
+        elsewhere.push_back(job.id);
+    }
+  }
+  if (fleet_ != nullptr) lives.merge(look_elsewhere(elsewhere));
+  return lives;
+}
+
+/// Of those that run in other processes of the fleet.
+LiveSolves Scheduler::look_elsewhere(const std::vector<std::string>& ids) const {
+  LiveSolves lives;
+  if (ids.empty()) return lives;
+  std::vector<Sought> sought;
+  for (const std::string& id : ids) sought.push_back({id});
+  for (const Found& found : fleet_->look(sought)) {
+    if (found.status != JobStatus::running || !found.started) continue;
+    const auto live = std::make_shared<LiveSolve>(*found.started);
+    live->follow(found.progress, found.iterations);
+    lives[found.job] = live;
+  }
+  return lives;
+}
+
+std::vector<Held> Scheduler::held() const {
   const std::lock_guard lock(mutex_);
-  const auto found = running_.find(id);
-  return found == running_.end() ? nullptr : found->second.live;
+  std::vector<Held> all;
+  for (const auto& [id, running] : running_) all.push_back({id, running.claim.attempt, running.live});
+  return all;
+}
+
+LookoutEars Scheduler::ears() {
+  LookoutEars ears;
+  ears.sought = [this] {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> ids;
+    for (const auto& [id, watch] : watches_)
+      if (!watch.expired() && !running_.contains(id)) ids.push_back(id);
+    return ids;
+  };
+  ears.begun = [this](const std::string& id, const std::shared_ptr<const LiveSolve>& live) {
+    const std::lock_guard lock(mutex_);
+    const auto watch = watch_of(id);
+    if (watch && !running_.contains(id)) watch->begin(live);
+  };
+  ears.ended = [this](const std::string& id) { end_watch(id); };
+  ears.queued = [this] {
+    {
+      const std::lock_guard lock(mutex_);
+      ++submissions_;
+    }
+    queued_.notify_all();
+  };
+  return ears;
 }
 
 bool Scheduler::accepting() const {
@@ -258,8 +342,12 @@ void Scheduler::run_to_end(const Running& running) {
   observer_(claim.job, ending);
   const bool small = is_small(ending);
   if (small) give_place();
-  keep(claim, ending);
-  announce_end(claim.job);
+  keep(running, ending);
+  // What is lost goes on elsewhere, and those who wait for it go on waiting.
+  if (running.live->is_lost() && accepting())
+    forget(claim.job);
+  else
+    announce_end(claim.job);
   if (!small) give_place();
 }
 
@@ -311,7 +399,7 @@ std::optional<Scheduler::Running> Scheduler::next() {
 
 std::optional<Claim> Scheduler::try_to_claim() {
   try {
-    std::optional<Claim> claim = store_.claim();
+    std::optional<Claim> claim = fleet_ != nullptr ? claim_what_fits() : store_.claim();
     if (!claim) store_.tidy();
     return claim;
   } catch (const StoreUnavailable&) {
@@ -322,27 +410,36 @@ std::optional<Claim> Scheduler::try_to_claim() {
   }
 }
 
+/// A job for which there is memory here.
+std::optional<Claim> Scheduler::claim_what_fits() {
+  const std::lock_guard lock(claiming_);
+  std::optional<Claim> claim = fleet_->claim({memory_.left()});
+  if (claim) memory_.add(claim->job.id, claim->predicted_memory.value_or(0), claim->job.owner);
+  return claim;
+}
+
 /// A store that fails may recover: what was solved is kept in memory meanwhile. If it does not, the job ends
 /// without its result, for which there may be no room at all; and if the service is stopped first, the next
-/// process solves it again.
-void Scheduler::keep(const Claim& claim, const Ending& ending) {
+/// process solves it again. So does another one of the fleet if the claim is lost meanwhile.
+void Scheduler::keep(const Running& running, const Ending& ending) {
   const auto until = std::chrono::steady_clock::now() + patience_with_store;
   while (std::chrono::steady_clock::now() < until) {
-    if (try_to_keep(claim, ending)) return;
+    if (try_to_keep(running, ending)) return;
     if (!pause()) return;
   }
-  while (!try_to_keep(claim, result_not_kept())) {
+  while (!running.live->is_lost() && !try_to_keep(running, result_not_kept())) {
     if (!pause()) return;
   }
 }
 
 /// False if it is worth another try.
-bool Scheduler::try_to_keep(const Claim& claim, const Ending& ending) {
+bool Scheduler::try_to_keep(const Running& running, const Ending& ending) {
+  const Claim& claim = running.claim;
   try {
-    const bool interrupted =
-        ending.status == JobStatus::cancelled && !accepting() && store_.outlives_process();
+    const bool interrupted = ending.status == JobStatus::cancelled && store_.outlives_process() &&
+                             (!accepting() || running.live->is_lost());
     if (interrupted && store_.give_back(claim)) {
-      spdlog::info("queued again for the next start");
+      spdlog::info(fleet_ != nullptr ? "queued again" : "queued again for the next start");
     } else if (!store_.finish(claim, ending)) {
       spdlog::error("it was not this worker's any more; its end is not kept");
     }
@@ -360,13 +457,21 @@ bool Scheduler::pause() {
 }
 
 void Scheduler::announce_end(const Job& job) {
+  forget(job);
+  for (const std::string& watched : {job.id, job.batch}) end_watch(watched);
+  if (lookout_) lookout_->hint();
+}
+
+void Scheduler::forget(const Job& job) {
   memory_.release(job.id);
   const std::lock_guard lock(mutex_);
   running_.erase(job.id);
-  for (const std::string& watched : {job.id, job.batch}) {
-    if (const auto watch = watch_of(watched)) watch->end();
-    watches_.erase(watched);
-  }
+}
+
+void Scheduler::end_watch(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (const auto watch = watch_of(id)) watch->end();
+  watches_.erase(id);
 }
 
 /// Null if nobody watches the job. The mutex must be held.

@@ -7,11 +7,15 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
+#include "server/jobs/heart.hpp"
+#include "server/jobs/lookout.hpp"
 #include "server/jobs/memory_budget.hpp"
 #include "server/jobs/run.hpp"
 #include "server/jobs/store.hpp"
@@ -28,11 +32,14 @@ class Stopping : public std::runtime_error {
 /// What became of a job that a client does not want any more.
 enum class Dismissal { unknown, cancelled, cancelling, removed };
 
+using LiveSolves = std::map<std::string, std::shared_ptr<const LiveSolve>>;
+
 /// Told how each run of a job ended, before its end is kept.
 using EndObserver = std::function<void(const Job& job, const Ending& ending)>;
 
 /// Runs the jobs of a store, as many at a time as there are workers. One whose result is small gives its
-/// place to the next one before its end is on the disk.
+/// place to the next one before its end is on the disk. Where several processes share the store, each has its
+/// workers, and clients of each see what all of them do.
 class Scheduler {
  public:
   /// The solves that run at the same time are to take no more than `max_memory` bytes together, as predicted
@@ -63,8 +70,12 @@ class Scheduler {
   /// Cancels a job that has not ended, else removes it.
   Dismissal dismiss(const std::string& id);
 
-  /// The solve of a job while it runs, else null.
+  /// The solve of a job while it runs, else null. Of one that another process runs: how far it was a moment
+  /// ago.
   std::shared_ptr<const LiveSolve> live(const std::string& id) const;
+
+  /// The same of those of the jobs that run, by their ids.
+  LiveSolves live(std::span<const Job> jobs) const;
 
   bool accepting() const;
 
@@ -96,11 +107,18 @@ class Scheduler {
   void count_memory(const Claim& claim);
   std::optional<Running> next();
   void give_place();
+  void admit(const NewJob& job);
   std::optional<Claim> try_to_claim();
-  bool try_to_keep(const Claim& claim, const Ending& ending);
-  void keep(const Claim& claim, const Ending& ending);
+  std::optional<Claim> claim_what_fits();
+  bool try_to_keep(const Running& running, const Ending& ending);
+  void keep(const Running& running, const Ending& ending);
   bool pause();
+  std::vector<Held> held() const;
+  LookoutEars ears();
+  LiveSolves look_elsewhere(const std::vector<std::string>& ids) const;
   void announce_end(const Job& job);
+  void forget(const Job& job);
+  void end_watch(const std::string& id);
   void announce_submission();
   std::shared_ptr<Watch> watch_of(const std::string& id) const;
   std::optional<Dismissal> try_to_cancel(const std::string& id);
@@ -108,6 +126,7 @@ class Scheduler {
   void cancel_all_queued();
 
   JobStore& store_;
+  Fleet* const fleet_;  ///< null if nobody else uses the store
   const SolveFunction solve_;
   const EndObserver observer_;
   const Factorization by_;
@@ -127,6 +146,11 @@ class Scheduler {
   std::uint64_t submissions_ = 0;
   std::map<std::string, Running> running_;               ///< by the id of the job
   std::map<std::string, std::weak_ptr<Watch>> watches_;  ///< by the id of the job or batch; shared by all
+
+  std::mutex claiming_;  ///< what one takes of the memory is counted before another asks what is left
+
+  std::optional<Heart> heart_;
+  std::optional<Lookout> lookout_;
 
   std::mutex joining_;
   std::vector<std::thread> threads_;

@@ -26,9 +26,10 @@ std::string content_of(const std::string& file) {
 /// On a free port and, unless the flags say otherwise, with its jobs in memory.
 std::vector<std::string> daemon_flags(std::vector<std::string> flags) {
   flags.insert(flags.end(), {"--port", "0"});
-  if (std::find(flags.begin(), flags.end(), "--data-dir") == flags.end()) {
-    flags.insert(flags.end(), {"--data-dir", ":memory:"});
-  }
+  const auto has = [&](const char* flag) {
+    return std::find(flags.begin(), flags.end(), flag) != flags.end();
+  };
+  if (!has("--data-dir") && !has("--database")) flags.insert(flags.end(), {"--data-dir", ":memory:"});
   return flags;
 }
 

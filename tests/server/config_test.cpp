@@ -152,6 +152,36 @@ TEST(Config, IsPrintedAsAFileThatCanBeReadBack) {
   EXPECT_EQ(line.config.log_format, "json");
 }
 
+TEST(Config, KeepsSolvesInADirectoryOrInADatabase) {
+  const CommandLine line = read({"--database", "postgresql://db/jobs", "--role", "worker"});
+  ASSERT_FALSE(line.exit_code);
+  EXPECT_EQ(line.config.daemon.database, "postgresql://db/jobs");
+  EXPECT_EQ(line.config.daemon.role, Role::worker);
+  EXPECT_EQ(read({}).config.daemon.role, Role::all);
+  EXPECT_EQ(read({"--database", "postgresql://db/jobs", "--data-dir", "/data"}).exit_code, 2);
+  EXPECT_EQ(read({"--database", "db/jobs"}).exit_code, 2);
+  EXPECT_EQ(read({"--database", "postgresql://db/jobs", "--role", "boss"}).exit_code, 2);
+  EXPECT_EQ(read({"--role", "front"}).exit_code, 2);
+  setenv("SIGNORINI_DATA_DIR", "/data", 1);
+  setenv("SIGNORINI_DATABASE", "postgres://db/jobs", 1);
+  EXPECT_EQ(read({}).exit_code, 2);
+  setenv("SIGNORINI_DATA_DIR", "", 1);
+  EXPECT_EQ(read({}).config.daemon.database, "postgres://db/jobs");
+  unsetenv("SIGNORINI_DATA_DIR");
+  unsetenv("SIGNORINI_DATABASE");
+}
+
+TEST(Config, IsPrintedWithoutThePasswordOfTheDatabase) {
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(
+      read({"--database", "postgresql://anne:secret@db/jobs?password=secret", "--print-config"}).exit_code,
+      0);
+  const std::string printed = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(printed.find("secret"), std::string::npos) << printed;
+  EXPECT_EQ(read({"--config", ConfigFile(printed).path()}).config.daemon.database,
+            "postgresql://anne@db/jobs?");
+}
+
 TEST(Config, NamesTheFactorisationOfTheServiceAndOfTheCommands) {
   EXPECT_EQ(read({}).config.daemon.factorization, Factorization::multifrontal);
   EXPECT_EQ(read({"--factorization", "cholmod"}).config.daemon.factorization, Factorization::cholmod);

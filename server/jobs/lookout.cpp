@@ -1,0 +1,99 @@
+#include "server/jobs/lookout.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <spdlog/spdlog.h>
+
+namespace signorini::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto between_looks = 500ms;  // without hints
+constexpr auto between_hints = 50ms;   // of one process
+
+}  // namespace
+
+Lookout::Lookout(Fleet& fleet, LookoutEars ears)
+    : fleet_(fleet),
+      ears_(std::move(ears)),
+      listening_([this](const std::stop_token& stop) { listen(stop); }),
+      telling_([this](const std::stop_token& stop) { tell(stop); }) {}
+
+Lookout::~Lookout() {
+  listening_.request_stop();
+  telling_.request_stop();
+}
+
+void Lookout::hint() {
+  {
+    const std::lock_guard lock(mutex_);
+    has_news_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Lookout::listen(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    try {
+      if (fleet_.wait_for_hint(between_looks)) ears_.queued();
+      look();
+    } catch (const StoreUnavailable&) {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, stop, between_looks, [] { return false; });
+    } catch (const std::exception& error) {
+      spdlog::error("other processes cannot be seen: {}", error.what());
+    }
+  }
+}
+
+void Lookout::look() {
+  const std::vector<std::string> ids = ears_.sought();
+  std::erase_if(mirrors_, [&](const auto& each) { return std::ranges::find(ids, each.first) == ids.end(); });
+  if (ids.empty()) return;
+  std::vector<Sought> sought;
+  for (const std::string& id : ids) {
+    const auto mirror = mirrors_.find(id);
+    sought.push_back(mirror == mirrors_.end() ? Sought{id}
+                                              : Sought{id, mirror->second.attempt, mirror->second.known});
+  }
+  std::set<std::string> gone(ids.begin(), ids.end());
+  for (const Found& found : fleet_.look(sought)) {
+    gone.erase(found.job);
+    follow(found);
+    if (has_ended(found.status)) ears_.ended(found.job);
+  }
+  for (const std::string& id : gone) ears_.ended(id);
+}
+
+void Lookout::follow(const Found& found) {
+  if (!found.started) return;
+  Mirror& mirror = mirrors_[found.job];
+  if (!mirror.live || mirror.attempt != found.attempt) {
+    mirror = {found.attempt, 0, std::make_shared<LiveSolve>(*found.started)};
+    ears_.begun(found.job, mirror.live);
+  }
+  mirror.live->follow(has_ended(found.status) ? mirror.live->progress() : found.progress, found.iterations);
+  mirror.known += found.iterations.size();
+}
+
+void Lookout::tell(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, stop, [this] { return has_news_; });
+      if (stop.stop_requested()) return;
+      has_news_ = false;
+    }
+    try {
+      fleet_.hint();
+    } catch (const std::exception&) {
+      // Others look by themselves.
+    }
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, stop, between_hints, [] { return false; });
+  }
+}
+
+}  // namespace signorini::server
