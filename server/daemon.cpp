@@ -125,7 +125,8 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
   const auto ended = [&metrics](const Job& job, const Ending& ending) { metrics.ended(job, ending); };
   const auto max_memory = static_cast<double>(config.max_memory);
   const int workers = config.role == Role::front ? 0 : config.workers;
-  Scheduler scheduler(*store, solve, workers, max_memory, ended, config.factorization);
+  Scheduler scheduler(*store, solve, workers, max_memory, ended, config.factorization,
+                      [&operators] { return operators.marks(); });
   EventStreams events(config.max_subscribers);
   Access access = access_of(config);
   Limits limits{config.max_body_bytes, config.max_unknowns, max_memory};

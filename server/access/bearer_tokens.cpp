@@ -113,10 +113,12 @@ void set_limit(Identity& identity, const std::string& word) {
     identity.share.memory = *number;
   } else if (number && limit == "queue") {
     identity.share.queue = static_cast<std::size_t>(*number);
+  } else if (number && limit == "weight" && *number >= 0.001) {
+    identity.share.weight = *number;
   } else if (number && limit == "rate") {
     identity.rate = *number;
   } else {
-    throw BadLine("has a bad limit; limits are queue=N, memory=BYTES and rate=N");
+    throw BadLine("has a bad limit; limits are queue=N, memory=BYTES, rate=N and weight=N");
   }
 }
 
@@ -138,8 +140,8 @@ void require_consistent(const std::vector<Entry>& earlier, const Entry& entry) {
   for (const Entry& each : earlier) {
     if (each.token == entry.token) throw BadLine("has a token that was there before");
     const Identity &a = each.identity, &b = entry.identity;
-    if (a.name == b.name &&
-        (a.share.queue != b.share.queue || a.share.memory != b.share.memory || a.rate != b.rate))
+    if (a.name == b.name && (a.share.queue != b.share.queue || a.share.memory != b.share.memory ||
+                             a.share.weight != b.share.weight || a.rate != b.rate))
       throw BadLine("gives `" + b.name + "` other limits than a line before");
   }
 }

@@ -88,6 +88,7 @@ NewJob new_job(Service& service, const Request& request, Intake intake) {
   job.created = std::chrono::system_clock::now();
   job.problem = std::make_shared<const std::string>(std::move(intake.text));
   job.predicted_memory = intake.memory();
+  job.operator_mark = operator_mark(intake.request.problem.operator_key);
   if (request.trace) job.trace = request.trace->id;
   job.owner = request.identity.name;
   job.share = request.identity.share;

@@ -16,6 +16,8 @@ namespace signorini::server {
 /// What a worker would run next.
 struct Wish {
   double memory = std::numeric_limits<double>::infinity();  ///< bytes that the solve may be predicted to take
+  std::vector<std::int64_t> operators =
+      {};  ///< marks of those that are at hand: their jobs come first, for a while
 };
 
 /// A claim that its runner works on, and how far it is.

@@ -72,6 +72,7 @@ struct NewJob {
   std::string owner;               ///< the name of who sent it; empty where there are no names
   Share share = {};                ///< of the owner
   std::string batch = {};          ///< id of the batch that it is of; empty: none
+  std::int64_t operator_mark = 0;  ///< of the operator that its solve takes (kept_operators.hpp); 0: of none
 };
 
 /// One solve from its acceptance on, without the texts and the fields that belong to it.

@@ -2,6 +2,14 @@
 
 namespace signorini::server {
 
+/// FNV-1a.
+std::int64_t operator_mark(std::string_view key) {
+  if (key.empty()) return 0;
+  std::uint64_t mark = 14695981039346656037u;
+  for (const char c : key) mark = (mark ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return static_cast<std::int64_t>(mark);
+}
+
 std::shared_ptr<const Operator> KeptOperators::find(const std::string& key) {
   const std::lock_guard lock(mutex_);
   const auto found = by_key_.find(key);
@@ -36,6 +44,13 @@ OperatorFigures KeptOperators::figures() const {
   OperatorFigures figures = figures_;
   figures.operators = entries_.size();
   return figures;
+}
+
+std::vector<std::int64_t> KeptOperators::marks() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::int64_t> marks;
+  for (const Entry& entry : entries_) marks.push_back(entry.mark);
+  return marks;
 }
 
 }  // namespace signorini::server

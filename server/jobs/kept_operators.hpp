@@ -5,10 +5,15 @@
 #include <mutex>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "contact/operator.hpp"
 
 namespace signorini::server {
+
+/// By which an operator is known without its key, which may have megabytes; the same in every process. Of an
+/// empty key, and of hardly any other, it is 0.
+std::int64_t operator_mark(std::string_view key);
 
 /// What the kept operators have been good for, since the start of the service; and what they hold now.
 struct OperatorFigures {
@@ -31,11 +36,15 @@ class KeptOperators : public OperatorCache {
 
   OperatorFigures figures() const;
 
+  /// Of all that are kept.
+  std::vector<std::int64_t> marks() const;
+
  private:
   struct Entry {
     std::string key;
     std::shared_ptr<const Operator> kept;
     std::size_t bytes;
+    std::int64_t mark = operator_mark(key);
   };
   using Entries = std::list<Entry>;
 

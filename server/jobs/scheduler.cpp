@@ -59,12 +59,13 @@ void log_end(const Claim& claim, const Ending& ending) {
 }  // namespace
 
 Scheduler::Scheduler(JobStore& store, SolveFunction solve, int workers, double max_memory,
-                     EndObserver observer, Factorization by)
+                     EndObserver observer, Factorization by, OperatorsAtHand at_hand)
     : store_(store),
       fleet_(store.fleet()),
       solve_(std::move(solve)),
       observer_(std::move(observer)),
       by_(by),
+      at_hand_(std::move(at_hand)),
       memory_(max_memory, static_cast<std::size_t>(workers)),
       working_(threads_for(workers)),
       places_(workers) {
@@ -413,7 +414,7 @@ std::optional<Claim> Scheduler::try_to_claim() {
 /// A job for which there is memory here.
 std::optional<Claim> Scheduler::claim_what_fits() {
   const std::lock_guard lock(claiming_);
-  std::optional<Claim> claim = fleet_->claim({memory_.left()});
+  std::optional<Claim> claim = fleet_->claim({memory_.left(), at_hand_()});
   if (claim) memory_.add(claim->job.id, claim->predicted_memory.value_or(0), claim->job.owner);
   return claim;
 }

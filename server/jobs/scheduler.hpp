@@ -34,6 +34,9 @@ enum class Dismissal { unknown, cancelled, cancelling, removed };
 
 using LiveSolves = std::map<std::string, std::shared_ptr<const LiveSolve>>;
 
+/// The marks of the operators that are at hand.
+using OperatorsAtHand = std::function<std::vector<std::int64_t>()>;
+
 /// Told how each run of a job ended, before its end is kept.
 using EndObserver = std::function<void(const Job& job, const Ending& ending)>;
 
@@ -47,7 +50,8 @@ class Scheduler {
   Scheduler(
       JobStore& store, SolveFunction solve, int workers,
       double max_memory = std::numeric_limits<double>::infinity(), EndObserver observer = [](auto&&...) {},
-      Factorization by = Factorization::multifrontal);
+      Factorization by = Factorization::multifrontal,
+      OperatorsAtHand at_hand = [] { return std::vector<std::int64_t>(); });
   ~Scheduler();
 
   Scheduler(const Scheduler&) = delete;
@@ -130,6 +134,7 @@ class Scheduler {
   const SolveFunction solve_;
   const EndObserver observer_;
   const Factorization by_;
+  const OperatorsAtHand at_hand_;
   MemoryBudget memory_;
 
   std::shared_mutex admission_;  ///< held by those who queue a job, and by drain() alone

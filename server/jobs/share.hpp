@@ -9,6 +9,7 @@ namespace signorini::server {
 struct Share {
   std::optional<std::size_t> queue;  ///< jobs that wait
   std::optional<double> memory;  ///< bytes that its jobs which may run at the same time are predicted to take
+  double weight = 1;  ///< its jobs take so many turns where those of another one take one; of a fleet
 };
 
 }  // namespace signorini::server

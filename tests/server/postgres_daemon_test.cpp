@@ -3,42 +3,14 @@
 #include <csignal>
 #include <thread>
 
-#include "child_process.hpp"
 #include "postgres_server.hpp"
-#include "running_service.hpp"
+#include "replica.hpp"
 
 namespace signorini::server::postgres_daemon_test {
 namespace {
 
 using namespace std::chrono_literals;
 using nlohmann::json;
-
-/// A daemon of the fleet.
-class Replica {
- public:
-  explicit Replica(const std::string& url, std::vector<std::string> flags = {})
-      : daemon_(flags_of(url, std::move(flags))), client_("127.0.0.1", daemon_.port()) {
-    client_.set_read_timeout(60);
-  }
-
-  int port() const { return daemon_.port(); }
-  ChildProcess& process() { return daemon_.process(); }
-  httplib::Result get(const std::string& path) { return client_.Get(path); }
-  httplib::Result post(const std::string& problem, const std::string& query = {}) {
-    return client_.Post("/v1/solves" + query, problem, "application/json");
-  }
-  httplib::Result remove(const std::string& id) { return client_.Delete("/v1/solves/" + id); }
-  json status_of(const std::string& id) { return json::parse(get("/v1/solves/" + id)->body); }
-
- private:
-  static std::vector<std::string> flags_of(const std::string& url, std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"--database", url, "--lease-seconds", "2", "--log-level", "info"});
-    return flags;
-  }
-
-  Daemon daemon_;
-  httplib::Client client_;
-};
 
 std::string example(Replica& replica, const std::string& name) {
   return replica.get("/v1/examples/" + name)->body;

@@ -74,10 +74,13 @@ std::string PostgresServer::new_database(const std::string& name) {
 }
 
 void PostgresServer::start() {
-  pid_ = spawn({programs + "/postgres", "-D", directory_ + "/data", "-k", directory_, "-c",
-                "listen_addresses=", "-c", "shared_buffers=32MB", "-c", "max_connections=100"},
-               directory_ + "/log");
   for (int i = 0; i < 1000; ++i) {
+    // One that was killed leaves processes, beside which no new one starts for a moment.
+    if (pid_ < 0 || ::waitpid(pid_, nullptr, WNOHANG) == pid_)
+      pid_ = spawn(
+          {programs + "/postgres", "-D", directory_ + "/data", "-k", directory_, "-c",
+           "listen_addresses=", "-c", "shared_buffers=32MB", "-c", "max_connections=100", "-c", "fsync=off"},
+          directory_ + "/log");
     try {
       const postgres::Connection connection(url("postgres"), 10s);
       return;

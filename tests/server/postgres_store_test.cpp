@@ -222,6 +222,54 @@ TEST_F(PostgresStore, AnOwnerOfManyJobsLeavesOthersTheirTurn) {
   EXPECT_EQ(order, (std::vector<std::string>{"a3", "a4", "b1", "a5", "b2"}));
 }
 
+TEST_F(PostgresStore, TurnsGoByWeight) {
+  const auto add = [&](const std::string& id, const std::string& owner, double weight) {
+    NewJob job = new_job(id);
+    job.owner = owner;
+    job.share.weight = weight;
+    a_.add(job);
+  };
+  for (const char* id : {"a1", "a2", "a3"}) add(id, "anne", 1);
+  for (const char* id : {"b1", "b2", "b3", "b4"}) add(id, "bert", 2);
+  std::vector<std::string> order;
+  while (const auto claim = b_.claim()) order.push_back(claim->job.id);
+  EXPECT_EQ(order, (std::vector<std::string>{"a1", "b1", "a2", "b2", "b3", "a3", "b4"}));
+}
+
+TEST_F(PostgresStore, JobsWhoseOperatorIsAtHandComeFirstButNotForEver) {
+  const auto add = [&](int number, std::int64_t mark) {
+    NewJob job = new_job("j" + std::to_string(100 + number));
+    job.operator_mark = mark;
+    a_.add(job);
+  };
+  for (int i = 0; i < 40; ++i) add(i, i % 2 == 0 ? 7 : 8);
+  std::vector<std::string> order;
+  while (const auto claim = b_.fleet()->claim({.operators = {8, 9}})) order.push_back(claim->job.id);
+  ASSERT_EQ(order.size(), 40u);
+  EXPECT_EQ((std::vector<std::string>(order.begin(), order.begin() + 10)),
+            (std::vector<std::string>{"j101", "j103", "j105", "j107", "j109", "j111", "j113", "j115", "j100",
+                                      "j117"}));
+}
+
+TEST_F(PostgresStore, WhatTakesTooMuchMemoryWaitsForAnother) {
+  NewJob large = new_job("a");
+  large.predicted_memory = 100;
+  a_.add(large);
+  EXPECT_FALSE(a_.fleet()->claim({.memory = 99}));
+  EXPECT_EQ(b_.fleet()->claim({.memory = 100})->predicted_memory, 100);
+  for (const char* id : {"b", "c"}) {
+    NewJob of_anne = new_job(id);
+    of_anne.predicted_memory = 60;
+    of_anne.owner = "anne";
+    of_anne.share.memory = 100;
+    a_.add(of_anne);
+  }
+  const Claim first = *a_.claim();
+  EXPECT_FALSE(b_.claim());
+  a_.finish(first, success());
+  EXPECT_TRUE(b_.claim());
+}
+
 TEST_F(PostgresStore, ANewerOneIsRefused) {
   Connection(url_, 5s).script("UPDATE schema_version SET version = 99");
   EXPECT_THROW(postgres::Store(url_, limits(), lease), CannotOpenStore);

@@ -15,37 +15,69 @@ namespace signorini::server {
 
 namespace {
 
-/// Whether tests of the service are to keep jobs in PostgreSQL in place of the memory.
-bool on_postgres() {
-  return std::getenv("SIGNORINI_TEST_POSTGRES") != nullptr;
+/// How many services are to share the jobs of a test by PostgreSQL; 0: one keeps them in memory.
+int services_on_postgres() {
+  const char* const number = std::getenv("SIGNORINI_TEST_POSTGRES");
+  return number == nullptr ? 0 : std::atoi(number);
 }
 
-std::unique_ptr<JobStore> open_store(const ServiceOptions& options) {
+std::unique_ptr<JobStore> open_store(const ServiceOptions& options, const std::string& database) {
   const StoreLimits limits{options.queue_limit, std::size_t{1} << 30, std::chrono::hours(1)};
-  if (options.data_dir.empty() && on_postgres())
-    return std::make_unique<postgres::Store>(empty_database(), limits);
+  if (!database.empty()) return std::make_unique<postgres::Store>(database, limits);
   if (options.data_dir.empty()) return std::make_unique<MemoryStore>(limits);
   return std::make_unique<SqliteStore>(options.data_dir, limits, options.vfs);
 }
 
 }  // namespace
 
+RunningService::Process::Process(const ServiceOptions& options, const std::string& database, int workers)
+    : store(open_store(options, database)),
+      scheduler(*store, scripted_solve, workers, options.max_memory,
+                [this](const Job& job, const Ending& ending) { metrics.ended(job, ending); }),
+      events(options.max_subscribers),
+      access{options.token_file.empty() ? BearerTokens() : BearerTokens(options.token_file),
+             RequestRate(options.rate), Cors(options.cors_origins), options.hosts},
+      service{*store, scheduler, events, access, options.limits, operators, metrics} {}
+
 RunningService::RunningService(const ServiceOptions& options)
-    : store_(open_store(options)),
-      scheduler_(*store_, scripted_solve, options.workers, options.max_memory,
-                 [this](const Job& job, const Ending& ending) { metrics_.ended(job, ending); }),
-      events_(options.max_subscribers),
-      access_{options.token_file.empty() ? BearerTokens() : BearerTokens(options.token_file),
-              RequestRate(options.rate), Cors(options.cors_origins), options.hosts},
-      service_{*store_, scheduler_, events_, access_, options.limits, operators_, metrics_},
-      router_(routes(service_)),
+    : processes_([&options] {
+        const bool is_fleet = options.data_dir.empty() && services_on_postgres() > 0;
+        const std::string database = is_fleet ? empty_database() : "";
+        std::vector<std::unique_ptr<Process>> processes;
+        for (int i = 0; i < (is_fleet ? services_on_postgres() : 1); ++i)
+          processes.push_back(std::make_unique<Process>(options, database, i == 0 ? options.workers : 0));
+        return processes;
+      }()),
+      router_(router_in_turns()),
       listener_({"127.0.0.1", 0, options.threads, options.limits.max_body_bytes}, router_) {
   listener_.start([] { ADD_FAILURE() << "the listener ended by itself"; });
 }
 
+/// Each request goes to the next of the services, as by a proxy before them.
+Router RunningService::router_in_turns() {
+  std::vector<Router> routers;
+  for (const auto& process : processes_) routers.push_back(routes(process->service));
+  std::vector<Route> table = routers.front().table();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    std::vector<Handler> handlers;
+    for (const Router& router : routers) handlers.push_back(router.table()[i].handler);
+    table[i].handler = [this, handlers](const Request& request) {
+      return handlers[requests_++ % handlers.size()](request);
+    };
+  }
+  Process& first = *processes_.front();
+  return {std::move(table), first.access,
+          [&metrics = first.metrics](const Request& request, const Response& response,
+                                     std::chrono::duration<double> time) {
+            metrics.replied(request, response, time);
+          }};
+}
+
 void RunningService::stop() {
-  scheduler_.stop();
-  events_.stop();
+  for (const auto& process : processes_) {
+    process->scheduler.stop();
+    process->events.stop();
+  }
   listener_.stop();
 }
 

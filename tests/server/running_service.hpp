@@ -30,24 +30,36 @@ struct ServiceOptions {
   std::string vfs = {};                 ///< the file layer of SQLite, empty for the usual one
 };
 
-/// The service on a free port of the loopback, with a scripted solver.
+/// The service on a free port of the loopback, with a scripted solver. SIGNORINI_TEST_POSTGRES=N makes it N
+/// with one database, to which requests go in turns, and of which the first has the workers.
 class RunningService {
  public:
   explicit RunningService(const ServiceOptions& options = {});
 
   int port() const { return listener_.port(); }
-  Scheduler& scheduler() { return scheduler_; }
+  /// Of the first one, if several share the jobs.
+  Scheduler& scheduler() { return processes_.front()->scheduler; }
   const Router& router() const { return router_; }
   void stop();
 
  private:
-  std::unique_ptr<JobStore> store_;
-  KeptOperators operators_{0};
-  Metrics metrics_;
-  Scheduler scheduler_;
-  EventStreams events_;
-  Access access_;
-  Service service_;
+  /// All of a service but how it is reached.
+  struct Process {
+    Process(const ServiceOptions& options, const std::string& database, int workers);
+
+    std::unique_ptr<JobStore> store;
+    KeptOperators operators{0};
+    Metrics metrics;
+    Scheduler scheduler;
+    EventStreams events;
+    Access access;
+    Service service;
+  };
+
+  Router router_in_turns();
+
+  std::vector<std::unique_ptr<Process>> processes_;
+  std::atomic<std::size_t> requests_ = 0;
   Router router_;
   Listener listener_;
 };

@@ -35,7 +35,11 @@ TEST_F(Solves, ShowProgressAndHistoryWhileRunning) {
   }
   EXPECT_EQ(progress.at("phase"), "iterate");
   EXPECT_GE(progress.at("iteration"), 3);
-  const json history = json::parse(get("/v1/solves/" + id + "/history")->body);
+  json history;
+  for (int i = 0; i < 200 && (i == 0 || history.at("history").at("iteration").size() < 3); ++i) {
+    history = json::parse(get("/v1/solves/" + id + "/history")->body);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   EXPECT_EQ(history.at("status"), "running");
   EXPECT_GE(history.at("history").at("iteration").size(), 3u);
   expect_problem(get("/v1/solves/" + id + "/result"), 409);

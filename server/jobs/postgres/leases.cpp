@@ -55,12 +55,18 @@ void append_piece(const std::vector<Iteration>& piece, std::int64_t first, std::
 }  // namespace
 
 std::optional<Claim> Leases::claim(const Wish& wish) {
+  // Each owner has so many jobs of weight 1 in there, which is how long another one waits at most.
+  constexpr double turns_of_preference = 16;
+  static const std::string fits =
+      "memory <= $2 AND (share IS NULL OR queue.memory + (SELECT coalesce(sum(leases.memory), 0) FROM leases "
+      "WHERE leases.owner = queue.owner) <= share)";
   // Who comes at the same time takes the next one. One statement, so that nobody can be stopped within it.
   static const std::string sql =
-      "WITH next AS (DELETE FROM queue WHERE job = (SELECT job FROM queue WHERE memory <= $2 "
-      "AND (share IS NULL OR queue.memory + (SELECT coalesce(sum(leases.memory), 0) FROM leases WHERE "
-      "leases.owner = queue.owner) "
-      "<= share) ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED) RETURNING job), "
+      "WITH next AS (DELETE FROM queue WHERE job = coalesce("
+      "(SELECT job FROM queue WHERE mark = ANY($3::bigint[]) AND mark <> 0 AND "
+      "turn < (SELECT min(turn) FROM queue) + $4::float8 AND " +
+      fits + " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), (SELECT job FROM queue WHERE " + fits +
+      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED)) RETURNING job), "
       "claimed AS (UPDATE jobs SET status = 'running', started = clock_ms(), attempt = attempt + 1 FROM next "
       "WHERE id = next.job RETURNING " +
       job_columns +
@@ -68,13 +74,16 @@ std::optional<Claim> Leases::claim(const Wish& wish) {
       "lease AS (INSERT INTO leases (job, attempt, until, owner, memory) "
       "SELECT id, attempt, started + $1::bigint, owner, memory FROM claimed) "
       "SELECT " +
-      job_columns + ", attempt, text, (memory::bigint) FROM claimed LEFT JOIN problems ON job = id";
-  Rows rows = database_.run(sql, Values(lease_.count(), wish.memory));
+      job_columns + ", attempt, text, memory FROM claimed LEFT JOIN problems ON job = id";
+  const Values values(lease_.count(), wish.memory,
+                      texts(wish.operators, [](std::int64_t mark) { return std::to_string(mark); }),
+                      turns_of_preference);
+  Rows rows = database_.run(sql, values);
   // Others, who came later, may have taken all that was there when this one looked, but not what they saw
   // only.
   for (int again = 0; rows.empty() && again < 3; ++again) {
     if (database_.run("SELECT FROM queue LIMIT 1").empty()) break;
-    rows = database_.run(sql, Values(lease_.count(), wish.memory));
+    rows = database_.run(sql, values);
   }
   if (rows.empty()) return std::nullopt;
   Claim claim{job_of(rows, 0), problem_of(rows.text(0, job_column_count + 1)),
@@ -141,7 +150,8 @@ void Leases::rescue() {
       "finished = CASE judged.verdict WHEN 'queued' THEN NULL ELSE clock_ms() END, "
       "verdict = CASE judged.verdict WHEN 'queued' THEN NULL WHEN 'failed' THEN $4::bytea ELSE $3::bytea END "
       "FROM judged WHERE jobs.id = judged.id RETURNING jobs.*), "
-      "again AS (INSERT INTO queue SELECT id, turn, owner, batch, memory, share FROM moved WHERE status = "
+      "again AS (INSERT INTO queue SELECT id, turn, owner, batch, memory, share, mark FROM moved WHERE "
+      "status = "
       "'queued') "
       "SELECT id, status FROM moved";
   const Rows rows =

@@ -151,6 +151,12 @@ END $$;
 -- At the commit, behind all other locks, so that nobody who holds one waits for something else.
 CREATE CONSTRAINT TRIGGER tally AFTER INSERT OR DELETE OR UPDATE OF status, bytes, damaged ON jobs
   DEFERRABLE INITIALLY DEFERRED FOR EACH ROW EXECUTE FUNCTION tally();
+)sql",
+                           // Marks of operators, by which a job finds who has factored its matrix.
+                           R"sql(
+ALTER TABLE jobs ADD COLUMN mark bigint NOT NULL DEFAULT 0;
+ALTER TABLE queue ADD COLUMN mark bigint NOT NULL DEFAULT 0;
+CREATE INDEX queue_by_mark ON queue (mark, turn) WHERE mark <> 0;
 )sql"};
 
 int version_of(Connection& connection) {

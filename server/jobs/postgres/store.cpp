@@ -70,15 +70,16 @@ JobCounts counts_in(const Rows& rows) {
 void insert(Connection& connection, const NewJob& job, const std::string& packed) {
   static const std::string sql =
       "WITH new AS (INSERT INTO jobs (id, status, title, tags, owner, batch, trace, created, memory, share, "
-      "bytes, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, 1 + greatest("
+      "bytes, mark, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12::float8 + "
+      "greatest("
       "coalesce((SELECT min(turn) FROM queue), 0), coalesce((SELECT max(turn) FROM queue WHERE owner = $4), "
       "0))) "
-      "RETURNING id, turn, owner, batch, memory, share), "
+      "RETURNING id, turn, owner, batch, memory, share, mark), "
       "waiting AS (INSERT INTO queue SELECT * FROM new) "
-      "INSERT INTO problems SELECT id, $11::bytea FROM new";
+      "INSERT INTO problems SELECT id, $13::bytea FROM new";
   connection.run(sql, Values(job.id, job.title, pack_list(job.tags), job.owner, job.batch, job.trace,
                              to_milliseconds(job.created), job.predicted_memory, job.share.memory,
-                             packed.size(), Bytes{packed}));
+                             packed.size(), job.operator_mark, 1 / job.share.weight, Bytes{packed}));
   if (job.key)
     connection.run("INSERT INTO idempotency_keys (owner, key, job) VALUES ($1, $2, $3)",
                    Values(job.owner, *job.key, job.id));
@@ -236,7 +237,7 @@ bool Store::give_back(const Claim& claim) {
   const Rows rows = database_.run(
       "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 AND NOT cancel_asked RETURNING job), "
       "again AS (UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 FROM held "
-      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share) "
+      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share, mark) "
       "INSERT INTO queue SELECT * FROM again RETURNING job",
       Values(claim.job.id, claim.attempt));
   if (!rows.empty()) return true;
