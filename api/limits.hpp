@@ -24,6 +24,7 @@ inline constexpr std::size_t texts = 1'000'000;
 inline constexpr std::size_t vertices = most_vertices, arcs = most_arcs, holes = most_holes,
                              local_sizes = most_local_sizes;
 inline constexpr std::size_t tags = 16;
+inline constexpr std::size_t quantities = 100;
 /// Of the boundary, each of which may have a condition.
 inline constexpr std::size_t parts = vertices + holes;
 

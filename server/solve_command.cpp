@@ -28,7 +28,7 @@ auto with_flags(const Use& use) {
 
 /// The result as it is asked for.
 struct Form {
-  enum class File { document, table, vtu, picture, contact_csv, history_csv };
+  enum class File { document, table, vtu, picture, contact_csv, history_csv, quantities_csv };
 
   File file = File::document;
   api::ResultFields fields;
@@ -40,7 +40,8 @@ Form::File file_asked_for(const SolveConfig& config) {
   using File = Form::File;
   if (config.format == "vtu") return File::vtu;
   if (config.format == "svg") return File::picture;
-  if (config.format == "csv") return config.field == "history" ? File::history_csv : File::contact_csv;
+  if (config.format == "csv" && config.field == "history") return File::history_csv;
+  if (config.format == "csv") return config.field == "quantities" ? File::quantities_csv : File::contact_csv;
   const bool is_read = config.format.empty() && config.fields.empty() && writes_to_terminal();
   return config.format == "table" || is_read ? File::table : File::document;
 }
@@ -53,8 +54,9 @@ void require_sense(const SolveConfig& config, Form::File file) {
   if (config.deformed && !is_picture) throw bad_flag("deformed", "is for pictures; add --format svg");
   if (!config.field.empty() && !is_picture && !is_csv)
     throw bad_flag("field", "is for pictures and tables; add --format svg or csv");
-  if (is_csv && !config.field.empty() && config.field != "contact" && config.field != "history")
-    throw bad_flag("field", "must be contact or history in the format csv");
+  if (is_csv && !config.field.empty() && config.field != "contact" && config.field != "history" &&
+      config.field != "quantities")
+    throw bad_flag("field", "must be contact, history or quantities in the format csv");
   if (config.deformed && !(*config.deformed >= 0 && *config.deformed <= api::Picture::most_deformed))
     throw bad_flag("deformed", "must be a number from 0 to 1e15");
 }
@@ -66,7 +68,8 @@ Form form_of(const SolveConfig& config) {
   if (config.format == "cbor") form.document = api::Format::cbor;
   return with_flags([&] {
     form.fields = api::ResultFields::parse(config.fields);
-    form.picture = {api::Picture::field_named(config.field), config.deformed};
+    if (form.file == Form::File::picture)
+      form.picture = {api::Picture::field_named(config.field), config.deformed};
     return form;
   });
 }
@@ -103,6 +106,8 @@ bool write(const std::string& problem, const std::string& title, const Ending& e
       return api::write_contact_csv(solution.contact, sink);
     case Form::File::history_csv:
       return api::write_history_csv(solution.history, sink);
+    case Form::File::quantities_csv:
+      return api::write_quantities_csv(solution.summary.quantities, sink);
     case Form::File::picture:
       with_flags([&] { form.picture.require_available(solution); });
       return api::write_picture(solution, form.picture, sink);

@@ -17,7 +17,7 @@ nlohmann::json kinds_of(nlohmann::json boundary) {
 }  // namespace
 
 std::string operator_key(const nlohmann::json& document) {
-  constexpr std::array others{"title", "tags", "load", "solver", "sweep", "study"};
+  constexpr std::array others{"title", "tags", "load", "quantities", "solver", "sweep", "study"};
   std::string key;
   // Member by member, for the domain may have megabytes.
   for (const auto& [name, member] : document.items()) {

@@ -1,5 +1,7 @@
 #include "api/problem/problem_json.hpp"
 
+#include <algorithm>
+
 #include "api/document/json_document.hpp"
 #include "api/limits.hpp"
 #include "api/problem/operator_key.hpp"
@@ -35,6 +37,20 @@ bool has_short_texts(const Value& document) {
   return false;
 }
 
+/// A mesh that refines itself for a quantity needs one of that name.
+void check_goal(const Value& mesh, const Problem& problem) {
+  const std::optional<Adaptive>& adaptive = problem.mesh.adaptive;
+  if (!adaptive || adaptive->quantity.empty() ||
+      std::ranges::find(problem.quantities, adaptive->quantity, &Quantity::name) != problem.quantities.end())
+    return;
+  std::vector<std::string_view> known;
+  for (const Quantity& quantity : problem.quantities) known.push_back(quantity.name);
+  mesh.faults().add(mesh.pointer() + "/adaptive/quantity",
+                    "there is no quantity " + in_quotes(adaptive->quantity) +
+                        suggestion(adaptive->quantity, known) +
+                        (known.empty() ? ": name one in quantities" : "; known are: " + list_of(known)));
+}
+
 Problem read_problem(const Object& document) {
   Problem problem;
   Model kind = Model::membrane;
@@ -53,6 +69,9 @@ Problem read_problem(const Object& document) {
     problem.boundary = read_boundary(*boundary, kind, problem.domain);
   if (const auto scheme = document.require("scheme", "the spaces: " + list_of(only_names(scheme_names))))
     problem.scheme = scheme->one_of(scheme_names).value_or(problem.scheme);
+  if (const auto quantities = document.find("quantities"))
+    problem.quantities = read_quantities(*quantities, kind, problem);
+  if (mesh) check_goal(*mesh, problem);
   return problem;
 }
 
@@ -61,7 +80,7 @@ Request read_request(const Value& value) {
   const auto document = value.object();
   if (!document || !has_short_texts(value)) return request;
   document->allow({"title", "tags", "model", "domain", "mesh", "material", "load", "boundary", "scheme",
-                   "solver", "sweep", "study"},
+                   "quantities", "solver", "sweep", "study"},
                   "a problem");
   if (const auto title = document->find("title")) request.title = read_title(*title);
   if (const auto tags = document->find("tags")) request.tags = read_tags(*tags);

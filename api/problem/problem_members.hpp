@@ -44,6 +44,9 @@ std::map<std::string, Condition> read_conditions(const Value& value, Model model
 /// The conditions by part of the domain; `all` is resolved to the parts that are not named.
 std::map<std::string, Condition> read_boundary(const Value& value, Model model, const Domain& domain);
 
+/// What is asked for; the problem is what was read of the document so far.
+std::vector<Quantity> read_quantities(const Value& value, Model model, const Problem& problem);
+
 Settings read_settings(const Value& value);
 
 std::string read_title(const Value& value);

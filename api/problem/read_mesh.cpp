@@ -63,7 +63,9 @@ void read_adaptive(const Object& object, MeshRequest& mesh) {
   mesh.adaptive = Adaptive{};
   const auto goal = value->object();
   if (!goal) return;
-  goal->allow({"tolerance", "max_triangles"}, "a mesh that refines itself");
+  goal->allow({"tolerance", "max_triangles", "quantity"}, "a mesh that refines itself");
+  if (const auto quantity = goal->find("quantity"))
+    mesh.adaptive->quantity = quantity->text(limits::part_name).value_or("");
   if (const auto tolerance = goal->require("tolerance", "the relative error bound to reach"))
     mesh.adaptive->tolerance =
         tolerance->number("a number between 0 and 1", [](double t) { return t > 0 && t < 1; }).value_or(0.5);

@@ -1,5 +1,6 @@
 #include "api/result/csv.hpp"
 
+#include <cmath>
 #include <functional>
 
 #include "api/result/history_columns.hpp"
@@ -97,9 +98,25 @@ bool write_history_csv(const std::vector<Iteration>& history, const Sink& sink) 
 bool write_study_csv(const std::vector<StudyRow>& rows, const Sink& sink) {
   const std::vector<StudyColumn> columns = study_columns(rows);
   return write_all(sink, [&](PieceWriter& out) {
-    put_line(out, columns, [&](const StudyColumn& column) { out.put(column.name); });
+    put_line(out, columns, [&](const StudyColumn& column) { out.put(field_of(column.name)); });
     for (std::size_t row = 0; row < rows.size(); ++row)
       put_line(out, columns, [&](const StudyColumn& column) { std::visit(PutCell{out}, column.cell(row)); });
+  });
+}
+
+bool write_quantities_csv(const std::vector<EnclosedQuantity>& quantities, const Sink& sink) {
+  return write_all(sink, [&](PieceWriter& out) {
+    out.put("name,value,estimate,lower,upper,guaranteed");
+    out.put(end_of_line);
+    for (const EnclosedQuantity& own : quantities) {
+      out.put(field_of(own.name));
+      for (const double number : {own.value, own.estimate, own.lower, own.upper}) {
+        out.put(',');
+        if (std::isfinite(number)) out.put_digits(number);
+      }
+      out.put(own.guaranteed ? ",true" : ",false");
+      out.put(end_of_line);
+    }
   });
 }
 

@@ -20,6 +20,10 @@ bool write_history_csv(const std::vector<Iteration>& history, const Sink& sink);
 /// take the first one off.
 bool write_contact_csv(const std::vector<ContactPart>& parts, const Sink& sink);
 
+/// A row a quantity: `name,value,estimate,lower,upper,guaranteed`; without a finite interval its ends are
+/// empty.
+bool write_quantities_csv(const std::vector<EnclosedQuantity>& quantities, const Sink& sink);
+
 /// A row a mesh and scheme, with the columns of study_columns.hpp; what a row does not have is empty.
 bool write_study_csv(const std::vector<StudyRow>& rows, const Sink& sink);
 

@@ -22,6 +22,8 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   if (fields.error_squares && solution.error_squares.size() > 0)
     write_error_squares(out.key("error_squares"), solution);
   if (fields.levels && !solution.levels.empty()) write_level_fields(out.key("levels"), solution.levels);
+  if (fields.quantities && !solution.summary.quantities.empty())
+    write_quantities(out.key("quantities"), solution.summary.quantities);
   if (fields.contact) write_contact(out.key("contact"), solution.contact);
   if (fields.history) write_history(out.key("history"), solution.history);
   if (fields.sweep && !solution.sweep.empty()) write_sweep(out.key("sweep"), solution.sweep, fields.contact);

@@ -15,8 +15,9 @@ struct ResultFields {
   bool stress = true;
   bool contact = true;
   bool history = true;
-  bool sweep = true;  ///< if the problem has one
-  bool study = true;  ///< if the problem has one
+  bool sweep = true;       ///< if the problem has one
+  bool study = true;       ///< if the problem has one
+  bool quantities = true;  ///< if the problem asks for some
   // Only by name: they follow from the stress, and there are none for a membrane.
   bool principal = false;
   bool von_mises = false;

@@ -17,6 +17,7 @@ const Names<bool ResultFields::*> field_names{{"summary", nullptr},
                                               {"history", &ResultFields::history},
                                               {"sweep", &ResultFields::sweep},
                                               {"study", &ResultFields::study},
+                                              {"quantities", &ResultFields::quantities},
                                               {"principal", &ResultFields::principal},
                                               {"von_mises", &ResultFields::von_mises},
                                               {"error_squares", &ResultFields::error_squares},
@@ -36,7 +37,7 @@ void pick(ResultFields& fields, std::string_view name) {
 
 ResultFields ResultFields::parse(std::string_view list) {
   if (list.empty()) return {};
-  ResultFields fields{false, false, false, false, false, false, false, false};
+  ResultFields fields{false, false, false, false, false, false, false, false, false};
   for (std::size_t start = 0; start <= list.size();) {
     const std::size_t comma = std::min(list.find(',', start), list.size());
     pick(fields, list.substr(start, comma - start));

@@ -22,6 +22,7 @@ void write_error_squares(DocumentWriter& out, const Solution& solution);
 /// What is seen of the levels of a mesh that refined itself.
 void write_level_fields(DocumentWriter& out, const std::vector<LevelFields>& levels);
 void write_contact(DocumentWriter& out, const std::vector<ContactPart>& parts);
+void write_quantities(DocumentWriter& out, const std::vector<EnclosedQuantity>& quantities);
 /// `with_contact`: clearances and pressures of every entry too.
 void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact);
 /// The rows of study_columns.hpp, and the fitted rates of each scheme.

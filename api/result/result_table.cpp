@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -78,6 +79,29 @@ void put_reactions(PieceWriter& out, const std::vector<Reaction>& parts) {
   put_table(out, rows);
 }
 
+/// As many digits as tell the ends of the interval apart, and one more.
+std::string shown_between(double number, double width) {
+  const double digits = width > 0 ? std::ceil(std::log10(std::abs(number) / width)) + 2 : 12;
+  return shown(number, static_cast<int>(std::clamp(digits, 3., 15.)));
+}
+
+void put_quantities(PieceWriter& out, const std::vector<EnclosedQuantity>& quantities) {
+  if (quantities.empty()) return;
+  std::vector<Row> rows{{"quantity", "estimate", "lower", "upper", ""}};
+  for (const EnclosedQuantity& own : quantities) {
+    const double width = own.upper - own.lower;
+    Row row{plain(own.name), own.is_bounded() ? shown_between(own.estimate, width) : shown(own.estimate)};
+    for (const double end : {own.lower, own.upper})
+      row.push_back(own.is_bounded() ? shown_between(end, width) : "");
+    row.push_back(own.guaranteed ? "guaranteed" : "not guaranteed");
+    rows.push_back(std::move(row));
+  }
+  out.put("\n");
+  put_table(out, rows);
+  for (const EnclosedQuantity& own : quantities)
+    for (const std::string& reason : own.unmet) put_line(out, plain(own.name), plain(reason));
+}
+
 void put_levels(PieceWriter& out, const std::vector<Level>& levels) {
   if (levels.empty()) return;
   std::vector<Row> rows{{"level", "triangles", "unknowns", "bound", "relative", "seconds"}};
@@ -129,6 +153,7 @@ bool write_result_table(std::string_view title, const Solution& solution, const 
   return write_all(sink, [&](PieceWriter& out) {
     put_summary(out, title, solution.summary);
     put_reactions(out, solution.summary.parts);
+    put_quantities(out, solution.summary.quantities);
     put_levels(out, solution.summary.levels);
     put_sweep(out, solution.sweep);
   });

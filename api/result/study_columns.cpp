@@ -1,5 +1,7 @@
 #include "api/result/study_columns.hpp"
 
+#include <cmath>
+
 #include "api/names.hpp"
 
 namespace signorini::api {
@@ -61,6 +63,13 @@ const Names<CellOfRow>& columns_of_cost() {
   return columns;
 }
 
+/// The cell of a row by its number, with nothing in it if there is no solution.
+std::function<Cell(std::size_t row)> of_row(const std::vector<StudyRow>& rows, CellOfRow cell) {
+  return [&rows, cell = std::move(cell)](std::size_t row) {
+    return rows[row].error.empty() ? cell(rows[row]) : Cell();
+  };
+}
+
 /// Gathers columns, and leaves out those in which nothing stands.
 class Columns {
  public:
@@ -76,10 +85,7 @@ class Columns {
 
   /// Columns that a row without a solution has nothing in.
   void add(const Names<CellOfRow>& columns) {
-    for (const auto& [name, of_row] : columns)
-      add(std::string(name), [&rows = rows_, of_row = of_row](std::size_t row) {
-        return rows[row].error.empty() ? of_row(rows[row]) : Cell();
-      });
+    for (const auto& [name, cell] : columns) add(std::string(name), of_row(rows_, cell));
   }
 
   std::vector<StudyColumn> take() { return std::move(all_); }
@@ -106,6 +112,37 @@ const std::vector<NamedQuantity>& falling_quantities() {
   return quantities;
 }
 
+namespace {
+
+/// The quantities of a row, by which the columns are named: a row that failed has none.
+const std::vector<EnclosedQuantity>& named_quantities(const std::vector<StudyRow>& rows) {
+  static const std::vector<EnclosedQuantity> none;
+  for (const StudyRow& row : rows)
+    if (!row.quantities.empty()) return row.quantities;
+  return none;
+}
+
+/// A number of the i-th quantity of a row, if it has one.
+CellOfRow of_quantity(std::size_t i, double EnclosedQuantity::*number) {
+  return [i, number](const StudyRow& row) {
+    const bool is_known = i < row.quantities.size() && std::isfinite(row.quantities[i].*number);
+    return is_known ? Cell(row.quantities[i].*number) : Cell();
+  };
+}
+
+}  // namespace
+
+std::vector<NamedQuantity> widths_of_intervals(const std::vector<StudyRow>& rows) {
+  std::vector<NamedQuantity> widths;
+  for (const EnclosedQuantity& quantity : named_quantities(rows))
+    widths.push_back({quantity.name + ".width", [i = widths.size()](const StudyRow& row) {
+                        const bool is_known = i < row.quantities.size() && row.quantities[i].is_bounded();
+                        return is_known ? std::optional(row.quantities[i].upper - row.quantities[i].lower)
+                                        : std::nullopt;
+                      }});
+  return widths;
+}
+
 std::vector<Scheme> schemes_of(const std::vector<StudyRow>& rows) {
   std::vector<Scheme> schemes;
   for (const StudyRow& row : rows)
@@ -128,6 +165,16 @@ std::vector<StudyColumn> study_columns(const std::vector<StudyRow>& rows) {
     });
   }
   columns.add(columns_of_bound());
+  const std::vector<NamedQuantity> widths = widths_of_intervals(rows);
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const std::string& name = named_quantities(rows)[i].name;
+    columns.add(name + ".estimate", of_row(rows, of_quantity(i, &EnclosedQuantity::estimate)));
+    columns.add(name + ".lower", of_row(rows, of_quantity(i, &EnclosedQuantity::lower)));
+    columns.add(name + ".upper", of_row(rows, of_quantity(i, &EnclosedQuantity::upper)));
+    columns.add(widths[i].name + "_rate", [&rows, value = widths[i].value](std::size_t row) {
+      return cell_of(observed_rate(rows, row, value));
+    });
+  }
   columns.add(columns_of_cost());
   columns.add("error",
               [&rows](std::size_t row) { return rows[row].error.empty() ? Cell() : Cell(rows[row].error); });

@@ -107,6 +107,7 @@ void write_entry_summary(DocumentWriter& out, const SweepEntry& entry) {
   write_contact_sums(out.key("contact"), entry.sums);
   write_reactions(out.key("parts"), entry.parts);
   if (entry.error_bound) write_error_bound(out.key("error_bound"), *entry.error_bound);
+  if (!entry.quantities.empty()) write_quantities(out.key("quantities"), entry.quantities);
   out.member("seconds", entry.seconds).end_object();
 }
 
@@ -122,9 +123,23 @@ void write_unknowns(DocumentWriter& out, const Unknowns& unknowns) {
       .end_object();
 }
 
+void write_quantities(DocumentWriter& out, const std::vector<EnclosedQuantity>& quantities) {
+  out.begin_array();
+  for (const EnclosedQuantity& quantity : quantities) {
+    const auto& [name, value, estimate, lower, upper, guaranteed, unmet, shares] = quantity;
+    out.begin_object().member("name", name).member("value", value).member("estimate", estimate);
+    if (quantity.is_bounded()) out.member("lower", lower).member("upper", upper);
+    out.member("guaranteed", guaranteed);
+    if (!guaranteed) out.key("unmet").texts(unmet);
+    out.end_object();
+  }
+  out.end_array();
+}
+
+/// All but the quantities, which are a member of the result.
 void write_summary(DocumentWriter& out, const Summary& summary) {
   const auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
-               error_bound, parts, levels, reused, timings, peak_memory_bytes] = summary;
+               error_bound, parts, quantities, levels, reused, timings, peak_memory_bytes] = summary;
   out.begin_object().member("outcome", name(outcome));
   if (!advice.empty()) out.member("advice", advice);
   if (!notes.empty()) out.key("notes").texts(notes);

@@ -126,6 +126,13 @@ void serialize(Archive& archive, Timings& timings) {
   archive(mesh, assemble, factorize, iterate, total);
 }
 
+/// Without the shares of triangles, which only a mesh that refines itself asks for.
+template <class Archive>
+void serialize(Archive& archive, EnclosedQuantity& quantity) {
+  auto& [name, value, estimate, lower, upper, guaranteed, unmet, shares] = quantity;
+  archive(name, value, estimate, lower, upper, guaranteed, unmet);
+}
+
 template <class Archive>
 void serialize(Archive& archive, Level& level) {
   auto& [number, triangles, unknowns, bound, relative, iterations, seconds] = level;
@@ -135,19 +142,20 @@ void serialize(Archive& archive, Level& level) {
 template <class Archive>
 void serialize(Archive& archive, Summary& summary, std::uint32_t version) {
   auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
-         error_bound, parts, levels, reused, timings, peak_memory_bytes] = summary;
+         error_bound, parts, quantities, levels, reused, timings, peak_memory_bytes] = summary;
   archive(outcome, advice, method, iterations, triangles, unknowns, energy, residuals, contact, parts,
           timings, peak_memory_bytes, reused, error_bound);
   if (version >= 1) archive(levels, timings.certify);
   if (version >= 2) serialize_asymmetry(archive, error_bound);
   if (version >= 3) archive(notes);
+  if (version >= 4) archive(quantities);
 }
 
-/// The bound came later and ends the list of a solution.
+/// The bound and the quantities came later and end the list of a solution.
 template <class Archive>
 void serialize(Archive& archive, SweepEntry& entry) {
   auto& [title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
-         parts, seconds, contact, error_bound] = entry;
+         parts, seconds, contact, error_bound, quantities] = entry;
   archive(title, error, outcome, advice, iterations, energy, penetration, tension, complementarity, sums,
           parts, seconds, contact);
 }
@@ -158,10 +166,11 @@ void serialize(Archive& archive, TrueErrors& errors) {
   archive(displacement, stress, energy_norm, energy, total);
 }
 
+/// The quantities came later and end the list of a solution.
 template <class Archive>
 void serialize(Archive& archive, StudyRow& row) {
-  auto& [scheme, error, level, size, triangles, unknowns, energy, error_bound, errors, iterations, seconds] =
-      row;
+  auto& [scheme, error, level, size, triangles, unknowns, energy, error_bound, quantities, errors, iterations,
+         seconds] = row;
   archive(scheme, error, level, size, triangles, unknowns, energy, error_bound, errors, iterations, seconds);
 }
 
@@ -191,6 +200,10 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
       serialize_asymmetry(archive, entry.error_bound);
     }
     archive(levels);
+  }
+  if (version >= 7) {
+    for (SweepEntry& entry : sweep) archive(entry.quantities);
+    for (StudyRow& row : study) archive(row.quantities);
   }
 }
 
@@ -224,5 +237,5 @@ void serialize(Archive& archive, Progress& progress) {
 }  // namespace signorini::server
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
-CEREAL_CLASS_VERSION(signorini::Summary, 3)
-CEREAL_CLASS_VERSION(signorini::Solution, 6)
+CEREAL_CLASS_VERSION(signorini::Summary, 4)
+CEREAL_CLASS_VERSION(signorini::Solution, 7)

@@ -1,17 +1,22 @@
 #pragma once
 
 #include "certify/displacement/admissible_displacement.hpp"
+#include "certify/elasticity/edge_tractions.hpp"
 #include "certify/membrane/balance_stream_function.hpp"
 #include "certify/pressure/contact_pressure.hpp"
 
 namespace signorini {
 
 /// v, and σ* by the pressure that it has on Γ_C and, for a membrane, the stream function that spreads its
-/// balance.
+/// balance, for an elastic body the tractions on all edges.
 struct AdmissiblePair {
   AdmissibleDisplacement v;
   ContactPressure pressure;
   std::optional<QuadraticValues> of_balance = std::nullopt;
+  std::optional<EdgeTractions> tractions = std::nullopt;
+
+  /// Why it is not admissible, in words; empty if it is.
+  std::vector<std::string> unmet() const;
 
   /// Of a membrane: the stream function, on a triangle, whose curl σ* has besides σ_h and its balance.
   Quadratic<1> stream_function_on(const Mesh& mesh, int t) const {
@@ -19,5 +24,9 @@ struct AdmissiblePair {
     return of_balance ? Quadratic<1>(of_pressure + of_balance->on(mesh, t)) : of_pressure;
   }
 };
+
+/// The pair of a discrete solution, made as close as pays. `coupling`: the unknowns of the trace space.
+AdmissiblePair admissible_pair(const Discretization& discrete, const Solution& solution,
+                               const Eigen::VectorXd& coupling, Progress& progress);
 
 }  // namespace signorini

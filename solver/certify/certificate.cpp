@@ -6,15 +6,11 @@
 #include <stdexcept>
 
 #include "certify/data/carried_loads.hpp"
-#include "certify/data/lost_digits.hpp"
-#include "certify/displacement/relaxation.hpp"
-#include "certify/elasticity/airy_minimization.hpp"
-#include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/energy_norm.hpp"
 #include "certify/gap_estimate.hpp"
-#include "certify/membrane/stream_function_minimization.hpp"
 #include "certify/patches/patch_pairs.hpp"
 #include "certify/totals.hpp"
+#include "certify/unmet.hpp"
 
 namespace signorini {
 namespace {
@@ -24,10 +20,6 @@ constexpr double kOfGap = 2e-5;
 
 /// What carried loads may add to the bound before they are worth factorisations.
 constexpr double kLittle = 0.01;
-
-/// Of the bound of an elastic body, as many sweeps without end take off 3 % more (an L-shape, a half-disc, ν
-/// = 0.3 and 0.4999), for a multiple of the time.
-constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
 
 /// Where the pressure of the conforming scheme is not admissible, finer pairs stand for the given one. A
 /// patch that cannot be solved, because nothing holds it, leaves the pair as it is. A mesh that refines
@@ -72,24 +64,11 @@ std::vector<EdgePressure> pressure_where(const Owners& owners, const Discretizat
   return all;
 }
 
-std::string nothing_takes(const std::vector<ContactPressure::Lack>& lacks) {
-  return lacks.empty() ? "a load that is no polynomial is known to so many digits, and no fixed part takes "
-                         "the rest: fix a part, or "
-                         "give loads that are polynomials on both sides of straight lines"
-                       : "a contact is too short for the mesh to hold the body in balance, and no fixed part "
-                         "takes the rest: refine "
-                         "the mesh where the body touches, or fix a part";
-}
-
 /// Products of numbers so small have lost digits, or are 0.
 bool are_lost(const Totals& totals, const Eigen::MatrixXd& stress) {
   constexpr double least = std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
   const double energies = totals.all.strain + totals.all.stress + totals.work;
   return energies < least && !stress.isZero(0);
-}
-
-void add(std::vector<std::string>& all, const std::vector<std::string>& some) {
-  all.insert(all.end(), some.begin(), some.end());
 }
 
 /// The data are not what they should be in a point that the discrete problem does not ask.
@@ -102,42 +81,21 @@ Certificate without_bound(const std::vector<Fault>& faults) {
 
 Certificate certify_sound_data(const Discretization& discrete, const Solution& solution,
                                const Eigen::VectorXd& coupling, Progress& progress) {
-  const Eigen::VectorXd clearance =
-      discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()));
-  AdmissiblePair pair{{discrete, solution, coupling, progress}, {discrete, solution.stress, clearance}};
+  const AdmissiblePair pair = admissible_pair(discrete, solution, coupling, progress);
   Certificate certificate;
-  std::vector<std::string> unmet = pair.v.unmet();
-  // Rounding leaves less, but where 1 − 2ν or the inverse of a contrast is no more than that.
-  constexpr double equilibrium = 1e-9;
-  if (solution.summary.residuals.equilibrium > equilibrium)
-    unmet.push_back(
-        "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly "
-        "incompressible "
-        "or of so different stiffnesses: take Poisson's ratio further from 1/2, or a smaller contrast");
   const double tolerance = kOfGap * std::min(1., estimate_gap(discrete, solution.stress, pair.v, progress));
   const LawOnMesh laws(discrete.problem.material, discrete.mesh, tolerance, progress);
-  for (const auto& reasons : {discrete.body.unmet(), discrete.traction.unmet(), laws.unmet(),
-                              lost_digits(discrete, solution.displacement.cwiseAbs().maxCoeff(), progress)})
-    add(unmet, reasons);
+  std::vector<std::string> unmet = reasons_against(discrete, solution, pair, laws, progress);
   Totals totals(discrete.triangles());
   Owners owners(discrete.triangles());
   std::iota(owners.begin(), owners.end(), 0);
   LoadsBroughtBack of_patches;
   if (discrete.spaces().components == 1) {
-    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
-    minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = stream_function_of_balance(discrete, progress);
     of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);
     totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair), owners, progress);
   } else {
-    pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
-    if (discrete.spaces().order == 1)
-      minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
-    EdgeTractions tractions(discrete, solution.stress, pair.pressure);
-    relax_tractions(discrete, solution.stress, tractions, kSweepsOfTractions, progress);
-    add(unmet, tractions.unmet());
-    progress.check();
-    totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, tractions), owners, progress);
+    totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions), owners,
+                  progress);
   }
   CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));

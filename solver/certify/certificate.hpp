@@ -15,6 +15,7 @@ struct Certificate {
   Eigen::VectorXd squares;
   /// Solution::admissible_pressure.
   std::vector<EdgePressure> pressure;
+  std::vector<EnclosedQuantity> quantities;  ///< that the problem asks for, if there is a bound
 
   bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }
 };

@@ -70,6 +70,12 @@ std::array<Matrix, 3> linear_modulus(const std::array<Matrix, TriangleRule::size
 template <int D>
 using Quadratic = Eigen::Matrix<double, D, 6>;
 
+/// A bound of the values on the triangle: the functions of P2 add up to at most 5/3 in absolute value.
+template <typename Nodes>
+double bound_of_quadratic(const Nodes& nodes) {
+  return 5. / 3 * nodes.colwise().norm().maxCoeff();
+}
+
 /// A linear function at the nodes of P2, from its values at the corners.
 template <int D>
 Quadratic<D> at_nodes(const Eigen::Matrix<double, D, 3>& corners) {

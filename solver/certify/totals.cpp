@@ -5,56 +5,10 @@
 #include <optional>
 
 #include "certify/data/oscillation.hpp"
-#include "fem/edge_pieces.hpp"
+#include "certify/pressure/contact_terms.hpp"
 
 namespace signorini {
 namespace {
-
-/// What g − p may be in the mean, relative to v.
-constexpr double kMeanTolerance = 1e-10;
-
-/// Of all edges, and of all triangles in which a load jumps.
-constexpr int kCellsOfContact = 20'000, kCellsOfJumps = 20'000;
-
-/// The contact terms 2 ∫ p* (g − v_n) over edge i of the clearance space, with the largest g that its
-/// enclosure allows, the same in all of them; 0 where that is not known to be finite, which
-/// AdmissibleDisplacement has refused.
-class ContactTerms {
- public:
-  ContactTerms(const Discretization& discrete, const AdmissibleDisplacement& v, int i, CellBudget& budget)
-      : discrete_(discrete),
-        edge_(i),
-        contact_(discrete.clearance.edges[i]),
-        length_(discrete.mesh.length(contact_.edge)) {
-    const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
-                        std::abs(v.along_contact(contact_, 1));
-    pieces_ = pieces_on_edge(gap_on(discrete, contact_), EdgeLine(discrete.mesh, contact_.edge),
-                             kMeanTolerance * size, budget);
-    const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
-    if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
-  }
-
-  double operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
-    const EdgePressure own = pressure.on(discrete_, edge_);
-    double sum = 0;
-    for (const EdgePiece& piece : pieces_) {
-      const double begin = std::max(piece.begin, own.begin), length = std::min(piece.end, own.end) - begin;
-      for (int q = 0; length > 0 && q < EdgeRule::size; ++q) {
-        const double s = begin + length * edge_rule().points[q];
-        const double room = piece(s) + piece.remainder - v.along_contact(contact_, s);
-        sum += length * edge_rule().weights[q] * own(s) * room;
-      }
-    }
-    return 2 * std::max(0., sum) * length_;
-  }
-
- private:
-  const Discretization& discrete_;
-  const int edge_;
-  const ContactEdge& contact_;
-  const double length_;
-  std::vector<EdgePiece> pieces_;
-};
 
 bool is_zero(const ContactPressure& pressure, int i) {
   return pressure.at_ends[i][0] == 0 && pressure.at_ends[i][1] == 0;
@@ -66,17 +20,12 @@ template <int D, typename Sums>
 void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
                  const Owners& owners, Progress& progress, const AdmissiblePair* second) {
   LawField<D> law(discrete.problem.material);
-  CellBudget of_jumps{kCellsOfJumps, &progress};
-  int jumps = 0;
-  for (int t = 0; t < discrete.triangles(); ++t) jumps += owners[t] >= 0 && discrete.body[t].jumps;
+  const Eigen::VectorXd unbalanced = oscillations(discrete, pair.pressure, laws, owners, progress);
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
-    double o = 0;
-    of_jumps.share(std::max(1, jumps),
-                   [&](CellBudget& budget) { o = oscillation<D>(discrete, t, pair.pressure, laws, budget); });
-    jumps -= discrete.body[t].jumps;
+    const double o = unbalanced[t];
     all += own;
     all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;
@@ -86,7 +35,7 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
     balanced_correction += of_correction;
     shares[owners[t]] += of_gap + of_correction + own.skew;
   }
-  CellBudget budget{kCellsOfContact, &progress};
+  CellBudget budget{ContactTerms::kCells, &progress};
   const int edges = static_cast<int>(discrete.clearance.edges.size());
   for (int i = 0; i < edges; ++i) {
     const int owner = owners[discrete.mesh.edge_triangles[discrete.clearance.edges[i].edge][0]];

@@ -38,11 +38,22 @@ struct TriangleSums {
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the stream function of both it and the
 /// pressure; v is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 ///
+/// v and σ* may be sums of those of several pairs on one mesh, each times a number. The load is that of the
+/// discretization.
+///
 /// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has
 /// beyond that counts twice, in the integral and in the rule, whose weights are positive.
 class MembraneSums {
  public:
+  struct Term {
+    double of_displacement, of_stress;  ///< what v and σ* of the pair count
+    const Discretization& discrete;     ///< which the pair belongs to
+    const Eigen::MatrixXd& stress;      ///< σ_h
+    const AdmissiblePair& pair;
+  };
+
   MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
+  MembraneSums(const Discretization& discrete, std::vector<Term> terms);
   explicit MembraneSums(const PatchPairs& pairs);
 
   TriangleSums operator()(int t, LawField<1>& law, const LawOnMesh& laws) const;
@@ -63,22 +74,38 @@ class MembraneSums {
   template <int Degree>
   static const Rule& rule_of_degree(int order);
   const Rule& rule_for(int degree) const;
+  std::optional<QuadraticBalance::Data> balance_on(int t) const;
+  Quadratic<1> displacement_on(int t) const;
+  bool is_lifted(int t) const;
+  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse,
+                 Eigen::Matrix<double, 1, 1>& value, Tensor<1>& slope) const;
   void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
-  const Eigen::MatrixXd& stress_;
-  const AdmissiblePair& pair_;
-  const AdmissiblePair* second_ = nullptr;
+  std::vector<Term> terms_;
+  const AdmissiblePair* second_ = nullptr;  ///< against that of the only term
   const Eigen::MatrixXd* change_ = nullptr;
-  const QuadraticBalance balance_;
 };
 
 /// Elastic body: σ* is the symmetric stress on the macro-element that has the tractions of EdgeTractions, is
 /// in equilibrium with the discrete load and lies nearest to σ_h. v is v_h, quadratic on each part of the
 /// macro-element, where the values inside the triangle minimise ‖C σ* − ε(v)‖_E: as ν → 1/2 its divergence
 /// follows that of the stress, because the mean over the edges of v_h balances the volume.
+///
+/// v and σ* may be sums of those of several pairs, as for MembraneSums: what v is inside the macro-elements
+/// is linear in them.
 class ElasticSums {
  public:
+  struct Term {
+    double of_displacement, of_stress;
+    const Discretization& discrete;
+    const Eigen::MatrixXd& stress;
+    const AdmissibleDisplacement& v;
+    const EdgeTractions& tractions;
+  };
+
+  /// Of several pairs: `gap`, `strain` and `energy` alone.
+  ElasticSums(const Discretization& discrete, std::vector<Term> terms);
   ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
@@ -103,15 +130,17 @@ class ElasticSums {
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
                                               const JohnsonMercierRule& rule) const;
+  bool is_lifted(int t) const;
+  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse, Eigen::Vector2d& value,
+                 Tensor<2>& slope) const;
   void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                         const Inner& inner, TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
-  const Solution& solution_;
-  const AdmissibleDisplacement& v_;
-  const EdgeTractions& tractions_;
+  std::vector<Term> terms_;
   const bool has_load_;
+  bool needs_all_ = false;
   PerShape<Shape> shapes_;
   JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
 };

@@ -30,11 +30,16 @@ struct Part {
 };
 
 std::vector<Part> parts_of(const Condition& condition, int components, const Vector& normal) {
-  if (const auto* pressure = std::get_if<Pressure>(&condition)) return {{pressure->value, -normal}};
   std::vector<Part> parts;
-  if (const auto* traction = std::get_if<Traction>(&condition))
-    for (int c = 0; c < traction->value.size(); ++c)
-      parts.push_back({traction->value.fields()[c], Eigen::VectorXd::Unit(components, c)});
+  const auto add = [&](const VectorField& value) {
+    for (int c = 0; c < value.size(); ++c)
+      parts.push_back({value.fields()[c], Eigen::VectorXd::Unit(components, c)});
+  };
+  if (const auto* pressure = std::get_if<Pressure>(&condition)) {
+    parts.push_back({pressure->value, -normal});
+    add(pressure->besides);
+  }
+  if (const auto* traction = std::get_if<Traction>(&condition)) add(traction->value);
   return parts;
 }
 

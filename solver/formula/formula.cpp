@@ -27,6 +27,15 @@ double Formula::operator()(double x, double y, double nx, double ny) const {
   return evaluate(evaluation);
 }
 
+Formula Formula::plus(double factor, const Formula& other) const {
+  std::vector<Instruction> program = program_;
+  program.push_back({Operation::constant, factor});
+  program.insert(program.end(), other.program_.begin(), other.program_.end());
+  program.push_back({Operation::multiply});
+  program.push_back({Operation::add});
+  return Formula(std::move(program));
+}
+
 bool Formula::has_variables() const {
   return std::ranges::any_of(program_, [](const Instruction& step) {
     return step.operation > Operation::constant && step.operation < Operation::negate;

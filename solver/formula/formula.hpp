@@ -66,6 +66,9 @@ class Formula {
 
   double operator()(double x, double y, double nx = 0, double ny = 0) const;
 
+  /// This formula plus a number times another.
+  Formula plus(double factor, const Formula& other) const;
+
   /// Some value of it is not the same everywhere.
   bool has_variables() const;
 

@@ -75,10 +75,12 @@ struct LocalSize {
 };
 
 /// A mesh that refines itself: until the relative error bound is at most `tolerance`, in (0, 1), and as long
-/// as it has at most so many triangles.
+/// as it has at most so many triangles. With the name of a quantity the tolerance is for the width of its
+/// interval, relative to its estimate.
 struct Adaptive {
   double tolerance = 0;
   int max_triangles = 100'000;
+  std::string quantity = {};
 };
 
 /// The mesh that a domain gets. Divisions and the pattern are for rectangles, local sizes for polygons; a

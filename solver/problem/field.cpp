@@ -43,6 +43,28 @@ Field Field::quadratic_on_edges(Function function, std::string name) {
   return field;
 }
 
+/// Of one that is no function.
+Formula Field::as_formula() const {
+  return formula_ ? *formula_ : Formula({{Operation::constant, constant_}});
+}
+
+Field Field::plus(double factor, const Field& other) const {
+  if (!function_ && !other.function_) return {as_formula().plus(factor, other.as_formula()), name_};
+  const Function sum = [one = *this, factor, two = other](const Point& x, const Vector& normal) {
+    return one(x, normal) + factor * two(x, normal);
+  };
+  return {sum, name_};
+}
+
+VectorField VectorField::plus(double factor, const VectorField& other) const {
+  if (other.size() == 0) return *this;
+  VectorField sum = *this;
+  sum.components_.resize(other.size());
+  for (int c = 0; c < sum.size(); ++c)
+    sum.components_[c] = sum.components_[c].plus(factor, other.components_[c]);
+  return sum;
+}
+
 double Field::checked(double value, const Point& x) const {
   if (std::isfinite(value)) return value;
   throw InvalidProblem({{name_, "is not finite at " + to_string(x) + ": " + shortest(value)}});

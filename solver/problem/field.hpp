@@ -57,6 +57,10 @@ class Field {
     return function_ ? checked(function_(x, normal), x) : constant_;
   }
 
+  /// This field plus a number times another, under the name of this one. Of formulas and constants it is one
+  /// again.
+  Field plus(double factor, const Field& other) const;
+
   bool is_constant() const { return !function_ && !formula_; }
   bool is_quadratic_on_edges() const { return quadratic_on_edges_; }
   /// Null if there is none.
@@ -65,6 +69,7 @@ class Field {
 
  private:
   double checked(double value, const Point& x) const;
+  Formula as_formula() const;
 
   double constant_ = 0;
   std::shared_ptr<const Formula> formula_;
@@ -85,6 +90,9 @@ class VectorField {
   double operator()(int component, const Point& x, const Vector& normal = Vector::Zero()) const {
     return components_.empty() ? 0 : components_[component](x, normal);
   }
+
+  /// The sum in each component that one of both has.
+  VectorField plus(double factor, const VectorField& other) const;
 
   int size() const { return static_cast<int>(components_.size()); }
   const std::vector<Field>& fields() const { return components_; }

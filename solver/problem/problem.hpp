@@ -9,6 +9,7 @@
 #include "problem/domain.hpp"
 #include "problem/field.hpp"
 #include "problem/material.hpp"
+#include "problem/quantity.hpp"
 
 namespace signorini {
 
@@ -25,9 +26,10 @@ struct Traction {
   VectorField value;
 };
 
-/// σ n = −value n: a pressure on an elastic body.
+/// σ n = −value n + besides: a pressure on an elastic body, and what acts there beside it.
 struct Pressure {
   Field value;
+  VectorField besides = {};
 };
 
 /// u_n ≤ gap, σ_n ≤ 0, (u_n − gap) σ_n = 0, σ_T = 0. For an elastic body u_n = u·n and σ_n = n·σn; for the
@@ -65,6 +67,7 @@ struct Problem {
   VectorField body;
   std::map<std::string, Condition> boundary;
   Scheme scheme = Scheme::nonconforming;
+  std::vector<Quantity> quantities;  ///< that are asked for
 
   /// A text that two problems have in common only if their meshes, materials, kinds of conditions and schemes
   /// are the same, whatever their gaps, loads and boundary values: who has read the fields can tell, the

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -109,6 +111,27 @@ struct ErrorBound {
   Parts parts;
 };
 
+/// A quantity that was asked for, with the interval that the certificate knows.
+struct EnclosedQuantity {
+  std::string name;
+  double value = 0;     ///< of the discrete solution
+  double estimate = 0;  ///< the value, or the middle of the interval if that is outside
+  /// The interval; infinite where nothing finite is known.
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+  bool guaranteed = false;
+  std::vector<std::string> unmet;  ///< why it is not guaranteed
+  /// Entry t: about what triangle t adds to the width of the interval, up to a factor.
+  Eigen::VectorXd shares;
+
+  EnclosedQuantity& operator*=(double factor) {
+    for (double* own : {&value, &estimate, &lower, &upper}) *own *= factor;
+    return *this;
+  }
+
+  bool is_bounded() const { return std::isfinite(lower) && std::isfinite(upper); }
+  double relative_width() const { return (upper - lower) / std::abs(estimate); }
+};
+
 /// Seconds.
 struct Timings {
   double mesh = 0;
@@ -132,8 +155,9 @@ struct Summary {
   ContactSummary contact;
   std::optional<ErrorBound> error_bound;  ///< none if nothing finite is known; the notes say why
   std::vector<Reaction> parts;
-  std::vector<Level> levels;  ///< of a mesh that refined itself
-  bool reused = false;        ///< the operator was there from an earlier solve
+  std::vector<EnclosedQuantity> quantities;  ///< in the order of the problem
+  std::vector<Level> levels;                 ///< of a mesh that refined itself
+  bool reused = false;                       ///< the operator was there from an earlier solve
   Timings timings;
   std::int64_t peak_memory_bytes = 0;  ///< that solving it took, its sweep and its study with it
 };
@@ -154,6 +178,7 @@ struct SweepEntry {
   std::vector<ContactPart> contact;
   std::optional<ErrorBound>
       error_bound;  ///< none if its fields were not computed, or nothing finite is known
+  std::vector<EnclosedQuantity> quantities;  ///< in the order of the problem
 };
 
 inline bool is_solved(const SweepEntry& entry) {
@@ -192,6 +217,7 @@ struct StudyRow {
   Unknowns unknowns;
   double energy = 0;
   std::optional<ErrorBound> error_bound;
+  std::vector<EnclosedQuantity> quantities;  ///< in the order of the problem
   TrueErrors errors;
   int iterations = 0;
   double seconds = 0;  ///< of the solve; of a level since the start of the first one

@@ -264,6 +264,7 @@ void add(const Problem& problem, Certificate certificate, Solution& solution) {
     std::ranges::copy(warnings(problem, solution, certificate.bound),
                       std::back_inserter(solution.summary.notes));
     solution.summary.error_bound = std::move(certificate.bound);
+    solution.summary.quantities = std::move(certificate.quantities);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);
   } else {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "certify/mark.hpp"
@@ -35,13 +36,19 @@ class Levels {
   /// To be asked for once there is one.
   const Solution& finest() const { return *finest_; }
   bool meets_tolerance() const {
-    return levels_.back().relative <= goal_.tolerance ||
+    return measures_.back() <= goal_.tolerance ||
            is_at_rest(problem_, *finest_, *finest_->summary.error_bound);
+  }
+  /// By which the next mesh is made.
+  const Eigen::VectorXd& shares() const {
+    const EnclosedQuantity* quantity = goal_quantity(finest_->summary);
+    return quantity && quantity->is_bounded() ? quantity->shares : finest_->error_squares;
   }
 
   void add(Solution solution) {
     const Summary& summary = solution.summary;
     const Unknowns& n = summary.unknowns;
+    measures_.push_back(measure(summary));
     levels_.push_back(
         progress_.refined({static_cast<int>(levels_.size()) + 1, static_cast<int>(summary.triangles),
                            static_cast<int>(n.stress + n.displacement + n.contact + n.rotation),
@@ -51,7 +58,7 @@ class Levels {
                        solution.displacement_at_points, solution.error_squares});
     history_.insert(history_.end(), solution.history.begin(), solution.history.end());
     finest_ = std::make_shared<Solution>(std::move(solution));
-    if (best_level_ < 0 || levels_.back().relative < levels_[best_level_].relative) {
+    if (best_level_ < 0 || measures_.back() < measures_[best_level_]) {
       best_ = finest_;
       best_level_ = static_cast<int>(levels_.size()) - 1;
     }
@@ -60,10 +67,11 @@ class Levels {
   /// Whether four times the triangles have not lowered the bound, once it tells that there is a solution to
   /// be seen: on the coarsest meshes it may rise before it falls.
   bool stagnate() const {
-    const Level& last = levels_.back();
-    return std::ranges::any_of(levels_, [&](const Level& level) {
-      return 4 * level.triangles <= last.triangles && level.relative < 1 && level.relative <= last.relative;
-    });
+    for (std::size_t i = 0; i < levels_.size(); ++i)
+      if (4 * levels_[i].triangles <= levels_.back().triangles && measures_[i] < 1 &&
+          measures_[i] <= measures_.back())
+        return true;
+    return false;
   }
 
   /// How many times as many triangles the next level should have: half as many again, or less where the rate
@@ -72,10 +80,12 @@ class Levels {
     constexpr double margin = 1.03;
     if (levels_.size() < 2) return kLargestGrowth;
     const Level &last = levels_.back(), &before = levels_[levels_.size() - 2];
-    const double rate = std::log(before.relative / last.relative) /
-                        std::log(static_cast<double>(last.triangles) / before.triangles);
-    return rate > 0 ? std::min(kLargestGrowth, margin * std::pow(last.relative / goal_.tolerance, 1 / rate))
-                    : kLargestGrowth;
+    const double measure = measures_.back(), measure_before = measures_[measures_.size() - 2];
+    const double rate =
+        std::log(measure_before / measure) / std::log(static_cast<double>(last.triangles) / before.triangles);
+    return rate > 0 && std::isfinite(rate)
+               ? std::min(kLargestGrowth, margin * std::pow(measure / goal_.tolerance, 1 / rate))
+               : kLargestGrowth;
   }
 
   Solution end(Outcome outcome, std::string advice = {}) {
@@ -107,14 +117,29 @@ class Levels {
 
   /// The best level as an answer that does not meet the tolerance.
   Solution end_above_tolerance(Outcome outcome, const std::string& why) {
-    return end(outcome, "the relative error bound is " + bound_and_triangles(levels_[best_level_]) +
-                            of_best_level() + ", and " + in_words(goal_.tolerance) + " was asked for; " +
-                            why);
+    const std::string what = goal_.quantity.empty()
+                                 ? "the relative error bound"
+                                 : "the relative width of the interval of " + goal_.quantity;
+    return end(outcome, what + " is " + measure_and_triangles(best_level_) + of_best_level() + ", and " +
+                            in_words(goal_.tolerance) + " was asked for; " + why);
   }
 
  private:
-  static std::string bound_and_triangles(const Level& level) {
-    return in_words(level.relative) + " with " + std::to_string(level.triangles) + " triangles";
+  const EnclosedQuantity* goal_quantity(const Summary& summary) const {
+    const auto found = std::ranges::find(summary.quantities, goal_.quantity, &EnclosedQuantity::name);
+    return found == summary.quantities.end() ? nullptr : &*found;
+  }
+
+  /// What the tolerance is for; infinite if there is no interval.
+  double measure(const Summary& summary) const {
+    if (goal_.quantity.empty()) return summary.error_bound->relative;
+    const EnclosedQuantity* quantity = goal_quantity(summary);
+    return quantity && quantity->is_bounded() ? quantity->relative_width()
+                                              : std::numeric_limits<double>::infinity();
+  }
+
+  std::string measure_and_triangles(std::size_t level) const {
+    return in_words(measures_[level]) + " with " + std::to_string(levels_[level].triangles) + " triangles";
   }
 
   /// Nothing if it is the last one.
@@ -123,7 +148,7 @@ class Levels {
     const Level& last = levels_.back();
     if (best.number == last.number) return "";
     return " on level " + std::to_string(best.number) + ", the best of " + std::to_string(last.number) +
-           ", while the last one has " + bound_and_triangles(last);
+           ", while the last one has " + measure_and_triangles(levels_.size() - 1);
   }
 
   const Problem& problem_;
@@ -132,6 +157,7 @@ class Levels {
   std::shared_ptr<Solution> finest_, best_;  // often the same
   int best_level_ = -1;
   std::vector<Level> levels_;
+  std::vector<double> measures_;  ///< what the tolerance is for, an entry a level
   std::vector<LevelFields> fields_;
   std::vector<Iteration> history_;
 };
@@ -179,11 +205,9 @@ Eigen::VectorXd foreseen(const Eigen::VectorXd& shares, const std::vector<int>& 
 /// The largest shares in the square of the bound are refined, as far as they are foreseen to fall, until the
 /// square will have fallen to less than a third or the triangles have grown so many times, or would be too
 /// many. To mark little and often grades the mesh as finely as many levels would, for the price of few.
-std::shared_ptr<const Mesh> finer_mesh(const Solution& solution, double growth, std::size_t most,
+std::shared_ptr<const Mesh> finer_mesh(Mesh mesh, Eigen::VectorXd shares, double growth, std::size_t most,
                                        Progress& progress) {
   constexpr double fall = 0.3;
-  Mesh mesh = solution.mesh;
-  Eigen::VectorXd shares = solution.error_squares;
   const double enough = growth * static_cast<double>(mesh.triangles.size()), little = fall * shares.sum();
   for (bool first = true;; first = false) {
     // Not to overshoot by a step what the tolerance needs.
@@ -215,7 +239,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           Outcome::tolerance_not_met,
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
-    mesh = finer_mesh(levels.finest(), levels.growth(), most, progress);
+    mesh = finer_mesh(levels.finest().mesh, levels.shares(), levels.growth(), most, progress);
     if (mesh->triangles.size() > most)
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +

@@ -8,6 +8,7 @@
 #include "contact/complete.hpp"
 #include "contact/mprgp.hpp"
 #include "contact/rigid_motions.hpp"
+#include "run/quantities.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
@@ -134,7 +135,11 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   const Fields fields = find(settings.method, progress, start);
   Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
-  const auto bound = [&] { return certify(*discretization_, solution, fields.coupling, progress); };
+  const auto bound = [&] {
+    Certificate certificate = certify(*discretization_, solution, fields.coupling, progress);
+    enclose_quantities(*this, fields, solution, settings, certificate, progress);
+    return certificate;
+  };
   add_bound(discretization_->problem, bound, solution, progress);
   return solution;
 }

@@ -5,6 +5,7 @@
 #include "contact/paper_uzawa.hpp"
 #include "contact/rigid_motions.hpp"
 #include "data_check.hpp"
+#include "quantities.hpp"
 #include "requested_mesh.hpp"
 #include "result/summarize.hpp"
 
@@ -31,8 +32,10 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
   Progress within(silent, progress.time_left());
   CondensedProblem condensed(problem, mesh, by, within);
   const Fields fields = condensed.find(ActiveSet{}, within);
-  const Solution discrete = describe(condensed.discretization(), fields, {ActiveSet{}, std::nullopt}, within);
+  const Settings exactly{ActiveSet{}, std::nullopt};
+  const Solution discrete = describe(condensed.discretization(), fields, exactly, within);
   Certificate certificate = certify(condensed.discretization(), discrete, fields.coupling, within);
+  enclose_quantities(condensed, fields, discrete, exactly, certificate, within);
   move_to(iterate.stress, condensed.discretization(), discrete, certificate, within);
   return certificate;
 }

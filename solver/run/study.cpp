@@ -47,6 +47,7 @@ StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solu
   row.unknowns = summary.unknowns;
   row.energy = summary.energy;
   row.error_bound = summary.error_bound;
+  row.quantities = summary.quantities;
   row.errors = true_errors(problem, exact, solution, observer);
   require_finite(row.errors);
   row.iterations = summary.iterations;
@@ -118,7 +119,7 @@ struct Measured {
   double triangles, value;
 };
 
-std::optional<Measured> measured(const StudyRow& row, const Quantity& quantity) {
+std::optional<Measured> measured(const StudyRow& row, const RowNumber& quantity) {
   const auto value = row.error.empty() ? quantity(row) : std::nullopt;
   if (!value || !(*value > 0)) return std::nullopt;
   return Measured{std::log(static_cast<double>(row.triangles)), std::log(*value)};
@@ -192,7 +193,7 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
 }
 
 std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size_t row,
-                                    const Quantity& quantity) {
+                                    const RowNumber& quantity) {
   const auto here = measured(rows[row], quantity);
   if (!here) return std::nullopt;
   for (std::size_t i = row; i-- > 0 && rows[i].scheme == rows[row].scheme;)
@@ -204,7 +205,7 @@ std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size
 }
 
 std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme,
-                                  const Quantity& quantity) {
+                                  const RowNumber& quantity) {
   std::vector<Measured> all;
   Measured mean{0, 0};
   for (const StudyRow& row : rows)

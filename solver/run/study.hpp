@@ -17,15 +17,16 @@ std::vector<StudyRow> run_study(const Problem& problem, const Study& study, cons
                                 Observer& observer);
 
 /// A column of a study's table: its number in a row, if there is one.
-using Quantity = std::function<std::optional<double>(const StudyRow&)>;
+using RowNumber = std::function<std::optional<double>(const StudyRow&)>;
 
 /// The exponent α for which the quantity is proportional to n^(−α/2), with n triangles, between the row and
 /// the one of its scheme before it that has the quantity. Where all edges are halved that is h^α. None where
 /// one of both is zero.
 std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size_t row,
-                                    const Quantity& quantity);
+                                    const RowNumber& quantity);
 
 /// The same by least squares over all rows of the scheme.
-std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme, const Quantity& quantity);
+std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme,
+                                  const RowNumber& quantity);
 
 }  // namespace signorini

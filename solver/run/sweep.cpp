@@ -24,6 +24,7 @@ SweepEntry entry_of(Solution solution) {
   entry.parts = summary.parts;
   entry.contact = std::move(solution.contact);
   entry.error_bound = summary.error_bound;
+  entry.quantities = summary.quantities;
   return entry;
 }
 
@@ -89,7 +90,7 @@ class Sweep::Reference {
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
     mean_stress_ = mean_stress(condensed_.discretization(), solution.stress, solution.displacement,
                                space().clearance(clearance_));
-    if (!show) observe(solution.stress, progress);
+    if (!show && problem_.quantities.empty()) observe(solution.stress, progress);
     entry_ = entry_of(std::move(solution));
   }
 
@@ -221,7 +222,9 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const Sh
     reference_.reset();
     operator_.reset();
   }
-  if (reference_ && !show) entry = reference_->with_gaps_of(varied_, settings_, progress);
+  // Quantities are enclosed by fields.
+  if (reference_ && !show && problem_.quantities.empty())
+    entry = reference_->with_gaps_of(varied_, settings_, progress);
   if (!entry) {
     reference_.reset();
     const auto condense = [&](const Problem& posed) {

@@ -259,10 +259,39 @@ std::vector<Fault> faults_of_sweep(const Problem& problem, const std::vector<Var
   return std::move(check.faults);
 }
 
+namespace {
+
+double distance_to_edge(const Mesh& mesh, int edge, const Point& x) {
+  const Point &a = mesh.points[mesh.edges[edge][0]], &b = mesh.points[mesh.edges[edge][1]];
+  const double s = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0., 1.);
+  return (a + s * (b - a) - x).norm();
+}
+
+bool contains(const Mesh& mesh, const Disc& disc) {
+  for (const BoundaryPart& part : mesh.boundary)
+    for (const int edge : part.edges)
+      if (distance_to_edge(mesh, edge, disc.centre) < disc.radius) return false;
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const AffineMap map(mesh.corners(t));
+    const Point local = map.jacobian.inverse() * (disc.centre - map.origin);
+    if (local.minCoeff() >= 0 && local.sum() <= 1) return true;
+  }
+  return false;
+}
+
+void check_discs(const Problem& problem, const Mesh& mesh, std::vector<Fault>& faults) {
+  for (const Quantity& quantity : problem.quantities)
+    if (quantity.disc && !contains(mesh, *quantity.disc))
+      faults.push_back({quantity.disc->name, "must lie in the body: the mean is one over the whole disc"});
+}
+
+}  // namespace
+
 DataCheck check_data(const Problem& problem, const std::vector<Variation>& sweep, const Mesh& mesh,
                      double most_steps, Progress* progress) {
   Validation validation(problem, most_steps, progress);
   DataCheck check{validation.run_on(mesh), validation.is_complete()};
+  check_discs(problem, mesh, check.faults);
   check_sweep(problem, sweep, mesh, most_steps, most_steps, progress, check);
   return check;
 }

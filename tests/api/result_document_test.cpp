@@ -195,8 +195,9 @@ TEST(ResultFieldsParse, RefusesUnknownNamesAndSaysWhichItKnows) {
   for (const char* list : {"all", "summary,", ",", "summary,,mesh", "Mesh", "mesh, stress", "energy"}) {
     const auto faults = faults_of([&] { ResultFields::parse(list); });
     ASSERT_EQ(pointers_of(faults), std::vector<std::string>{"/fields"}) << list;
-    EXPECT_THAT(faults[0].detail, HasSubstr("summary, problem, mesh, displacement, stress, contact, history, "
-                                            "sweep, study, principal, von_mises, error_squares, levels"));
+    EXPECT_THAT(faults[0].detail,
+                HasSubstr("summary, problem, mesh, displacement, stress, contact, history, "
+                          "sweep, study, quantities, principal, von_mises, error_squares, levels"));
   }
 }
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 
 import signorini
-from signorini import boundary, domain, fields, material, mesh_request, problem, study, summary
+from signorini import boundary, domain, fields, material, mesh_request, problem, quantity, study, summary
 from signorini.document import encoded, read, written
 from signorini.figures import CONFORMING
 
@@ -31,7 +31,7 @@ SCHEMAS["Reaction"] = SCHEMAS["Reactions"]["additionalProperties"]
 SCHEMAS["ContactPart"] = SCHEMAS["ContactParts"]["additionalProperties"]
 
 #: What a problem is made of, and what a result.
-OF_PROBLEMS = [boundary, domain, material, mesh_request, problem, study]
+OF_PROBLEMS = [boundary, domain, material, mesh_request, problem, quantity, study]
 OF_RESULTS = [fields, summary]
 
 

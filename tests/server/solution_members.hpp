@@ -63,20 +63,26 @@ auto members(T& all) {
   auto& [a, b, c, d, e, f, g, h, i] = all;
   return std::tie(a, b, c, d, e, f, g, h, i);
 }
+/// Without the shares of triangles, which are not stored.
+template <Some<EnclosedQuantity> T>
+auto members(T& all) {
+  auto& [a, b, c, d, e, f, g, shares] = all;
+  return std::tie(a, b, c, d, e, f, g);
+}
 template <Some<StudyRow> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
 }
 template <Some<SweepEntry> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
 }
 template <Some<Summary> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
 }
 template <Some<Solution> T>
 auto members(T& all) {

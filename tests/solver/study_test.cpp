@@ -29,7 +29,7 @@ std::optional<double> bound_of(const StudyRow& row) {
   return row.error_bound ? std::optional(row.error_bound->value) : std::nullopt;
 }
 
-Quantity error(std::optional<double> TrueErrors::*which) {
+RowNumber error(std::optional<double> TrueErrors::*which) {
   return [which](const StudyRow& row) { return row.errors.*which; };
 }
 
@@ -298,7 +298,7 @@ std::vector<StudyRow> made_up(Scheme scheme, const std::vector<std::pair<int, do
 }
 
 TEST(StudyRates, AreExponentsOfTheEdgeLength) {
-  const Quantity stress = error(&TrueErrors::stress);
+  const RowNumber stress = error(&TrueErrors::stress);
   std::vector<StudyRow> rows = made_up(Scheme::conforming, {{8, 4}, {32, 1}, {128, 0.5}});
   EXPECT_FALSE(observed_rate(rows, 0, stress));
   EXPECT_NEAR(observed_rate(rows, 1, stress).value(), 2, 1e-14);

@@ -22,9 +22,10 @@ from .local import Local
 from .material import HookeTensor, MembraneMaterial, YoungPoisson
 from .mesh_request import Adaptive, LocalSize, MeshRequest
 from .problem import Load, Problem, Solver, Variation
+from .quantity import Disc, MeanDisplacement, PressureForce, SupportReaction, Weight
 from .result import Result
 from .study import Exact, Study
-from .summary import Estimate, Summary
+from .summary import EnclosedQuantity, Estimate, Summary
 
 __all__ = [
     "Adaptive",
@@ -34,6 +35,8 @@ __all__ = [
     "CircularHole",
     "Client",
     "Contact",
+    "Disc",
+    "EnclosedQuantity",
     "Estimate",
     "Exact",
     "Fault",
@@ -44,11 +47,13 @@ __all__ = [
     "Load",
     "Local",
     "LocalSize",
+    "MeanDisplacement",
     "MembraneMaterial",
     "MeshRequest",
     "NotInResult",
     "PackageMissing",
     "Polygon",
+    "PressureForce",
     "Problem",
     "Rectangle",
     "Refused",
@@ -60,8 +65,10 @@ __all__ = [
     "Solver",
     "Study",
     "Summary",
+    "SupportReaction",
     "Traction",
     "Variation",
     "Vertex",
+    "Weight",
     "YoungPoisson",
 ]

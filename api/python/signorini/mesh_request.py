@@ -22,8 +22,9 @@ class LocalSize:
 class Adaptive:
     """An accuracy instead of a mesh."""
 
-    tolerance: float  #: what the relative error bound shall be at most
+    tolerance: float  #: what the relative error bound shall be at most, or the relative width of `quantity`
     max_triangles: int | None = None  #: when to give up; default 100 000
+    quantity: str | None = None  #: for which the tolerance is, that of the relative width of its interval
 
 
 @dataclass(frozen=True, kw_only=True)

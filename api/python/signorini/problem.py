@@ -11,6 +11,7 @@ from .document import written
 from .domain import Domain
 from .material import Material
 from .mesh_request import MeshRequest
+from .quantity import Quantity
 from .study import Study
 from .values import VectorField
 
@@ -58,6 +59,7 @@ class Problem:
     load: Load | None = None
     boundary: Mapping[str, Condition]  #: part → condition; `all` names every part that is not named
     scheme: Literal["conforming", "nonconforming"]
+    quantities: Sequence[Quantity] | None = None  #: that the result encloses in intervals
     solver: Solver | None = None
     sweep: Sequence[Variation] | None = None  #: other data, solved on the same mesh
     study: Study | None = None

@@ -11,7 +11,7 @@ from .document import read
 from .errors import NotInResult, SolveFailed
 from .fields import ContactPart, DisplacementField, History, LevelFields, Mesh, StressField
 from .plot import plot
-from .summary import StudyTable, Summary, SweepEntry
+from .summary import EnclosedQuantity, StudyTable, Summary, SweepEntry
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -107,6 +107,12 @@ class Result:
         """The levels of an adaptive mesh, but the one whose fields the others are; if they were asked for."""
         levels: tuple[LevelFields, ...] = read(tuple[LevelFields, ...], self._member("levels"))
         return levels
+
+    @property
+    def quantities(self) -> tuple[EnclosedQuantity, ...]:
+        """What the problem asks for, in its order."""
+        quantities: tuple[EnclosedQuantity, ...] = read(tuple[EnclosedQuantity, ...], self._member("quantities"))
+        return quantities
 
     @property
     def contact(self) -> dict[str, ContactPart]:

@@ -72,6 +72,19 @@ class ErrorBound:
 
 
 @dataclass(frozen=True)
+class EnclosedQuantity:
+    """A quantity of the problem with the interval in which it lies."""
+
+    name: str
+    value: float  #: of the discrete solution
+    estimate: float  #: `value`, or the middle of the interval if that is outside
+    lower: float | None  #: none without a finite interval
+    upper: float | None
+    guaranteed: bool  #: whether the interval is proved to contain the quantity
+    unmet: tuple[str, ...] | None  #: if not, why
+
+
+@dataclass(frozen=True)
 class Levels:
     """The meshes of an adaptive solve, columns by level."""
 
@@ -129,6 +142,7 @@ class SweepSummary:
     contact: ContactSums
     parts: dict[str, Reaction]
     error_bound: ErrorBound | None  #: none of an entry that has but new gaps
+    quantities: tuple[EnclosedQuantity, ...] | None  #: of a problem that asks for some
     seconds: float  #: for this entry
 
 

@@ -7,6 +7,12 @@
 #include "certify/data/linear_remainder.hpp"
 
 namespace signorini {
+namespace {
+
+/// Of all triangles in which a load jumps.
+constexpr int kCellsOfJumps = 20'000;
+
+}  // namespace
 
 template <int D>
 double oscillation(const Discretization& discrete, int t, const ContactPressure& pressure,
@@ -23,6 +29,22 @@ double oscillation(const Discretization& discrete, int t, const ContactPressure&
     if (rest > 0) sum += linear_remainder_on_edge<D>(corners, e) * rest;
   }
   return sum == 0 ? 0 : sum * std::sqrt(laws.whole(t).softest);
+}
+
+Eigen::VectorXd oscillations(const Discretization& discrete, const ContactPressure& pressure,
+                             const LawOnMesh& laws, const std::vector<int>& owners, Progress& progress) {
+  const auto of = discrete.spaces().components == 1 ? oscillation<1> : oscillation<2>;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(discrete.triangles());
+  CellBudget budget{kCellsOfJumps, &progress};
+  int jumps = 0;
+  for (int t = 0; t < discrete.triangles(); ++t) jumps += owners[t] >= 0 && discrete.body[t].jumps;
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    progress.check_in(t);
+    if (owners[t] < 0) continue;
+    budget.share(std::max(1, jumps), [&](CellBudget& own) { all[t] = of(discrete, t, pressure, laws, own); });
+    jumps -= discrete.body[t].jumps;
+  }
+  return all;
 }
 
 template double oscillation<1>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,

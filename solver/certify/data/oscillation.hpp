@@ -19,4 +19,9 @@ template <int D>
 double oscillation(const Discretization& discrete, int t, const ContactPressure& pressure,
                    const LawOnMesh& laws, CellBudget& budget);
 
+/// Of each triangle of the mesh that has an owner (an entry of at least 0), all by one budget; 0 of the
+/// others.
+Eigen::VectorXd oscillations(const Discretization& discrete, const ContactPressure& pressure,
+                             const LawOnMesh& laws, const std::vector<int>& owners, Progress& progress);
+
 }  // namespace signorini

@@ -171,6 +171,11 @@ void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
     if (!follows_gap(contact)) lower_below(contact, budget);
 }
 
+std::optional<double> AdmissibleDisplacement::off_followed_gap(const ContactEdge& contact) const {
+  const auto found = off_gap_.find(contact.edge);
+  return found == off_gap_.end() ? std::nullopt : std::optional(found->second);
+}
+
 bool AdmissibleDisplacement::follows_gap(const ContactEdge& contact) const {
   return off_gap_.contains(contact.edge);
 }
@@ -237,12 +242,7 @@ AdmissibleDisplacement::LiftRest AdmissibleDisplacement::rest_of_lifts(int t) co
 }
 
 double AdmissibleDisplacement::largest_on(int t) const {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k)
-    sum = std::max({sum, points_.col(discrete_.mesh.triangles[t][k]).norm(),
-                    middles_.col(discrete_.mesh.triangle_edges[t][k]).norm()});
-  // The functions of P2 add up to at most 5/3 in absolute value.
-  return 5. / 3 * sum;
+  return components_ == 1 ? bound_of_quadratic(on<1>(t)) : bound_of_quadratic(on<2>(t));
 }
 
 Eigen::VectorXd AdmissibleDisplacement::direction(const ContactEdge& contact) const {

@@ -75,6 +75,9 @@ class AdmissibleDisplacement {
   double along_contact(const ContactEdge& contact, double s) const;
   double room(const ContactEdge& contact, double s) const;
 
+  /// Where v_n follows the gap, by what multiple of the bubble 4 s (1 − s) it is below; else nothing.
+  std::optional<double> off_followed_gap(const ContactEdge& contact) const;
+
   /// Why v_h is not admissible, in words; empty if it is.
   const std::vector<std::string>& unmet() const { return unmet_; }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "certify/data/balanced_load.hpp"
@@ -19,18 +20,44 @@ int degree_of_fields(bool lifted) {
 
 ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
                          const AdmissibleDisplacement& v, const EdgeTractions& tractions)
+    : ElasticSums(discrete, {{1, 1, discrete, solution.stress, v, tractions}}) {
+  needs_all_ = true;
+}
+
+ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms)
     : discrete_(discrete),
-      solution_(solution),
-      v_(v),
-      tractions_(tractions),
+      terms_(std::move(terms)),
       has_load_(discrete.problem.body.size() > 0),
       shapes_(discrete) {}
 
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
-  return {johnson_mercier_data(discrete_, tractions_, t, map),
-          solution_.stress.col(t),
-          v_.on<2>(t).reshaped(),
-          {}};
+  Given sum{JohnsonMercierData::Zero(),
+            LocalVector::Zero(terms_[0].stress.rows()),
+            Eigen::Matrix<double, 12, 1>::Zero(),
+            {}};
+  for (const Term& term : terms_) {
+    if (term.of_stress != 0) {
+      sum.data += term.of_stress * johnson_mercier_data(term.discrete, term.tractions, t, map);
+      sum.stress += term.of_stress * term.stress.col(t);
+    }
+    sum.displacement += term.of_displacement * term.v.on<2>(t).reshaped();
+  }
+  return sum;
+}
+
+bool ElasticSums::is_lifted(int t) const {
+  return std::ranges::any_of(terms_, [t](const Term& term) { return term.v.is_lifted(t); });
+}
+
+void ElasticSums::add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse,
+                            Eigen::Vector2d& value, Tensor<2>& slope) const {
+  for (const Term& term : terms_) {
+    Eigen::Vector2d own = Eigen::Vector2d::Zero();
+    Tensor<2> own_slope = Tensor<2>::Zero();
+    term.v.add_lifts<2>(t, reference, inverse, own, own_slope);
+    value += term.of_displacement * own;
+    slope += term.of_displacement * own_slope;
+  }
 }
 
 /// The operators of the triangle's shape, or null.
@@ -49,7 +76,7 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
   for (const JohnsonMercier::Place& place : rule.places) {
     Eigen::Vector2d value = Eigen::Vector2d::Zero();
     Tensor<2> slope = Tensor<2>::Zero();
-    v_.add_lifts<2>(t, place.point, map.jacobian.inverse(), value, slope);
+    add_lifts(t, place.point, map.jacobian.inverse(), value, slope);
     strains.push_back(mandel(slope));
   }
   return strains;
@@ -70,18 +97,24 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
                            rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
     if (!given.lifted.empty()) {
       Tensor<2> slope = Tensor<2>::Zero();
-      v_.add_lifts<2>(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
+      add_lifts(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
     }
     work += weight * (quadratic * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
     rest_square += weight * rest.squaredNorm();
   }
   sums.energy -= work;
-  sums.energy_slack += load.rest * std::sqrt(rest_square) + load.uncertain_work * v_.largest_on(t);
+  sums.energy_slack += load.rest * std::sqrt(rest_square) +
+                       load.uncertain_work * bound_of_quadratic(given.displacement.reshaped(2, 6));
 }
 
 void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law,
                                     TriangleSums& sums) const {
-  const AdmissibleDisplacement::LiftRest rest = v_.rest_of_lifts(t);
+  AdmissibleDisplacement::LiftRest rest;
+  for (const Term& term : terms_) {
+    const AdmissibleDisplacement::LiftRest own = term.v.rest_of_lifts(t);
+    rest.value += std::abs(term.of_displacement) * own.value;
+    rest.slope += std::abs(term.of_displacement) * own.slope;
+  }
   if (rest.slope == 0) return;
   const ProjectedLoad& load = discrete_.body[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
@@ -98,14 +131,15 @@ TriangleSums ElasticSums::by_norms(const JohnsonMercierNorms& norms, const Given
     return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
   };
   const auto stresses = z.head(norms.correction.cols());
-  inner = norms.inner * z;
+  if (has_load_) inner = norms.inner * z;
   TriangleSums sums;
   sums.gap = square(norms.gap, z);
+  sums.strain = sums.energy = square(norms.strain, z) / 2;
+  if (!needs_all_) return sums;
   sums.direct_gap = square(norms.direct_gap, z);
   sums.correction = square(norms.correction, stresses);
   sums.skew = square(norms.skew, given.stress);
   sums.stress = square(norms.stress, given.stress);
-  sums.strain = sums.energy = square(norms.strain, z) / 2;
   return sums;
 }
 
@@ -135,7 +169,7 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRu
 TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
   const AffineMap map(discrete_.mesh.corners(t));
   Given given = given_on(t, map);
-  const bool lifted = v_.is_lifted(t), constant_law = discrete_.element.has_constant_material();
+  const bool lifted = is_lifted(t), constant_law = discrete_.element.has_constant_material();
   const JohnsonMercierNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
   const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());

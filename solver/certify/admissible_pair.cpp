@@ -1,0 +1,42 @@
+#include "certify/admissible_pair.hpp"
+
+#include "certify/displacement/relaxation.hpp"
+#include "certify/elasticity/airy_minimization.hpp"
+#include "certify/elasticity/traction_relaxation.hpp"
+#include "certify/membrane/stream_function_minimization.hpp"
+
+namespace signorini {
+namespace {
+
+/// Of the bound of an elastic body, as many sweeps without end take off 3 % more (an L-shape, a half-disc, ν
+/// = 0.3 and 0.4999), for a multiple of the time.
+constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
+
+}  // namespace
+
+std::vector<std::string> AdmissiblePair::unmet() const {
+  std::vector<std::string> all = v.unmet();
+  if (tractions) all.insert(all.end(), tractions->unmet().begin(), tractions->unmet().end());
+  return all;
+}
+
+AdmissiblePair admissible_pair(const Discretization& discrete, const Solution& solution,
+                               const Eigen::VectorXd& coupling, Progress& progress) {
+  const Eigen::VectorXd clearance =
+      discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()));
+  AdmissiblePair pair{{discrete, solution, coupling, progress}, {discrete, solution.stress, clearance}};
+  if (discrete.spaces().components == 1) {
+    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
+    minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
+    pair.of_balance = stream_function_of_balance(discrete, progress);
+    return pair;
+  }
+  pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
+  if (discrete.spaces().order == 1)
+    minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
+  pair.tractions.emplace(discrete, solution.stress, pair.pressure);
+  relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, progress);
+  return pair;
+}
+
+}  // namespace signorini

@@ -1,0 +1,49 @@
+#include "certify/pressure/contact_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace signorini {
+namespace {
+
+/// What g − p may be in the mean, relative to v.
+constexpr double kMeanTolerance = 1e-10;
+
+}  // namespace
+
+ContactTerms::ContactTerms(const Discretization& discrete, const AdmissibleDisplacement& v, int i,
+                           CellBudget& budget)
+    : discrete_(discrete),
+      edge_(i),
+      contact_(discrete.clearance.edges[i]),
+      length_(discrete.mesh.length(contact_.edge)) {
+  const double size = std::abs(v.along_contact(contact_, 0)) + std::abs(v.along_contact(contact_, 0.5)) +
+                      std::abs(v.along_contact(contact_, 1));
+  pieces_ = pieces_on_edge(gap_on(discrete, contact_), EdgeLine(discrete.mesh, contact_.edge),
+                           kMeanTolerance * size, budget);
+  const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
+  if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
+}
+
+ContactTerms::Work ContactTerms::work(const ContactPressure& pressure,
+                                      const AdmissibleDisplacement& v) const {
+  const EdgePressure own = pressure.on(discrete_, edge_);
+  Work sum;
+  for (const EdgePiece& piece : pieces_) {
+    const double begin = std::max(piece.begin, own.begin), length = std::min(piece.end, own.end) - begin;
+    for (int q = 0; length > 0 && q < EdgeRule::size; ++q) {
+      const double s = begin + length * edge_rule().points[q];
+      const double force = length_ * length * edge_rule().weights[q] * own(s);
+      sum.value += force * (piece(s) - v.along_contact(contact_, s));
+      sum.radius += force * piece.remainder;
+    }
+  }
+  return sum;
+}
+
+double ContactTerms::operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
+  const Work own = work(pressure, v);
+  return 2 * std::max(0., own.value + own.radius);
+}
+
+}  // namespace signorini

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "problem/field.hpp"
+
+namespace signorini {
+
+struct Problem;
+
+/// A motion of a support: x ↦ translation + rotation · (−y, x) of an elastic body; of a membrane the first
+/// component of the translation.
+struct SupportMotion {
+  Vector translation = Vector::Zero();
+  double rotation = 0;
+};
+
+/// A disc in the body, over which a mean is taken.
+struct Disc {
+  Point centre{0, 0};
+  double radius = 0;
+  std::string name;  ///< the path of the member that it came from
+};
+
+/// A number that is linear in the solution and that the certificate encloses:
+///
+///     Q = <p, w> + (q, u) + <r, u> + Σ ∫ ρ·σn,
+///
+/// with weights w on contact parts, densities q in the domain and r on parts of Γ_F, and motions ρ of fixed
+/// parts, where σn is what acts on the body. Each of them is along which data change in neighbour(), and −Q
+/// is how the least energy changes with them (certify/THEORY.md, section 9).
+struct Quantity {
+  std::string name;
+  std::map<std::string, Field> weights;          ///< w, by parts
+  VectorField density;                           ///< q
+  std::map<std::string, VectorField> densities;  ///< r, by parts
+  std::map<std::string, SupportMotion> motions;  ///< ρ, by parts
+  bool is_mean = false;                          ///< it is divided by the length of the parts with a density
+  std::optional<Disc> disc;                      ///< in which alone q is not 0; it must lie in the domain
+};
+
+/// The problem with the gaps g + z w, the load f + z q, the tractions t + z r and the fixed values u_D − z ρ.
+/// Its operator is the same.
+Problem neighbour(const Problem& problem, const Quantity& quantity, double z);
+
+}  // namespace signorini

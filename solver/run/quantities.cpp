@@ -1,0 +1,250 @@
+#include "run/quantities.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "certify/energy_norm.hpp"
+#include "certify/quantities/quantity_enclosure.hpp"
+#include "certify/quantities/reflection.hpp"
+#include "contact/residuals.hpp"
+#include "fem/quadrature.hpp"
+
+namespace signorini {
+namespace {
+
+/// What integrals of squares may be off by where the law varies, beside the square of R relative to the
+/// stress.
+constexpr double kOfRadius = 2e-5;
+
+/// Neighbours differ in stress by R^{2/3}, relative to it: then x of Theorem 4 is about as large as R, for it
+/// is the error of a solution that is singular where contact begins. A larger step bends the way; a smaller
+/// one is paid for by x²/K.
+constexpr double kLeastRadius = 1e-4;
+double relative_step(double relative_radius) {
+  return std::pow(std::max(relative_radius, kLeastRadius), 2. / 3);
+}
+/// So much smaller or larger is as good.
+constexpr double kLeastStep = 0.5, kMostStep = 4;
+/// The guess is no further off: what moves the stress by less does not touch what is asked for.
+constexpr double kMostCorrection = 100;
+
+/// Where the data of a neighbour contradict each other, as at a support beside a contact that nearly touches,
+/// a shorter step may not.
+constexpr int kTries = 3;
+constexpr double kShorter = 1. / 16;
+
+/// In words: the quantity depends on more than the energy.
+const std::string kUnbounded =
+    "no interval is claimed, because no bound of the energy bounds this where a contact touches beside a "
+    "support, or "
+    "where its weight jumps: let the weight vanish there, or ask for the sum over both parts with one "
+    "motion; ";
+
+double largest_of(const Field& field, const Mesh& mesh, const std::vector<int>& edges) {
+  double most = 0;
+  for (const int edge : edges)
+    for (const double s : {0., 0.5, 1.}) {
+      const auto [x, normal] = mesh.on_boundary(edge, s);
+      most = std::max(most, std::abs(field(x, normal)));
+    }
+  return most;
+}
+
+double diameter_of(const Mesh& mesh) {
+  Point low = mesh.points[0], high = low;
+  for (const Point& x : mesh.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
+}
+
+/// About what the stress changes by per z, in the norm of C: in two dimensions the energy of a body whose
+/// boundary moves by w is E w², that of one on which the force F acts is F² / E, whatever its size.
+double guessed_response(const Quantity& quantity, const Mesh& mesh, const Material& material) {
+  const double root = std::sqrt(compliance_at(material, mesh.centroid(0)).diagonal().maxCoeff()),
+               length = diameter_of(mesh);
+  double moved = 0, force = 0;
+  for (const BoundaryPart& part : mesh.boundary) {
+    if (const auto found = quantity.weights.find(part.name); found != quantity.weights.end())
+      moved = std::max(moved, largest_of(found->second, mesh, part.edges));
+    if (const auto found = quantity.motions.find(part.name); found != quantity.motions.end())
+      moved = std::max(moved, found->second.translation.norm() + std::abs(found->second.rotation) * length);
+    if (const auto found = quantity.densities.find(part.name); found != quantity.densities.end())
+      for (const Field& field : found->second.fields()) force += largest_of(field, mesh, part.edges) * length;
+  }
+  for (const Field& field : quantity.density.fields())
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
+      force += std::abs(field(mesh.centroid(t))) * AffineMap(mesh.corners(t)).determinant / 2;
+  return moved / root + force * root;
+}
+
+double length_of_parts(const Quantity& quantity, const Mesh& mesh) {
+  double length = 0;
+  for (const BoundaryPart& part : mesh.boundary)
+    if (quantity.densities.contains(part.name))
+      for (const int edge : part.edges) length += mesh.length(edge);
+  return length;
+}
+
+/// A neighbouring problem and its solution, which refer to each other.
+class Neighbour {
+ public:
+  Neighbour(const Neighbour&) = delete;
+  Neighbour(const Problem& problem, const Quantity& quantity, double z, const CondensedProblem& condensed,
+            const Fields& fields, const Settings& settings, Progress& progress)
+      : problem_(neighbour(problem, quantity, z)), condensed_(problem_, condensed.used_operator(), progress) {
+    fields_ = condensed_.find(settings.method, progress, fields.clearance);
+  }
+
+  const Discretization& discretization() const { return condensed_.discretization(); }
+  const Fields& fields() const { return fields_; }
+
+  /// Refers to this.
+  CertifiedSolution certified(const LawOnMesh& laws, Progress& progress) {
+    solution_.stress = fields_.stress;
+    solution_.displacement = fields_.displacement;
+    solution_.rotation = discretization().traces.rotation(fields_.coupling);
+    const Eigen::VectorXd clearance = discretization().clearance.clearance(fields_.clearance);
+    solution_.summary.residuals =
+        residuals(solution_, clearance, Eigen::VectorXd::Zero(clearance.size()), discretization());
+    return {discretization(), solution_, fields_.coupling, laws, progress};
+  }
+
+ private:
+  Problem problem_;
+  CondensedProblem condensed_;
+  Fields fields_;
+  Solution solution_;
+};
+
+/// Q of the discrete solution: what the discrete data differ by towards a neighbour, per z, does its work on
+/// it.
+double value_of(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
+                const Solution& solution, const Discretization& other, double z) {
+  double sum = (other.load - discrete.load).cwiseProduct(fields.displacement).sum() / z;
+  const Eigen::Index free = discrete.traces.free_unknowns();
+  sum += (other.coupling_load - discrete.coupling_load).head(free).dot(fields.coupling.head(free)) / z;
+  Eigen::VectorXd forces;
+  contact_forces(
+      discrete, [&](int t) -> LocalVector { return solution.stress.col(t); }, forces);
+  const auto& rows = discrete.clearance.rows;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    sum += forces[static_cast<Eigen::Index>(i)] * (other.clearance.rows[i].gap - rows[i].gap) / z;
+  for (const Reaction& reaction : solution.summary.parts)
+    if (const auto found = quantity.motions.find(reaction.part); found != quantity.motions.end()) {
+      for (std::size_t c = 0; c < reaction.force.size(); ++c)
+        sum += found->second.translation[static_cast<Eigen::Index>(c)] * reaction.force[c];
+      sum += found->second.rotation * reaction.moment;
+    }
+  return sum;
+}
+
+void add(const std::vector<std::string>& reasons, std::vector<std::string>& all) {
+  for (const std::string& reason : reasons)
+    if (std::ranges::find(all, reason) == all.end()) all.push_back(reason);
+}
+
+/// Encloses quantities of one solution.
+class Encloser {
+ public:
+  /// `relative`: the relative error bound.
+  Encloser(const CondensedProblem& condensed, const Fields& fields, const Solution& solution, double relative,
+           const Settings& settings, Progress& progress)
+      : condensed_(condensed),
+        fields_(fields),
+        solution_(solution),
+        settings_(settings),
+        progress_(progress),
+        laws_(discrete().problem.material, discrete().mesh, kOfRadius * std::min(1., relative * relative),
+              progress),
+        base_(discrete(), solution, fields.coupling, laws_, progress),
+        enclosure_(base_, laws_, progress),
+        size_(std::sqrt(energy_norm_squares(discrete(), solution.stress, laws_, progress).sum())) {}
+
+  EnclosedQuantity operator()(const Quantity& quantity) {
+    EnclosedQuantity own;
+    own.name = quantity.name;
+    double shorter = 1;
+    for (int tries = 0; tries < kTries; ++tries, shorter *= kShorter) {
+      own.unmet = base_.unmet;
+      try {
+        enclose(quantity, shorter, own);
+        if (own.unmet.size() == base_.unmet.size()) break;
+      } catch (const InvalidProblem& unsound) {
+        const Fault& fault = unsound.faults().front();
+        add({kUnbounded + fault.where + " " + fault.detail}, own.unmet);
+      } catch (const SolveError& failure) {
+        add({failure.what()}, own.unmet);
+      }
+    }
+    own.guaranteed = own.is_bounded() && own.unmet.empty();
+    return own;
+  }
+
+ private:
+  const Discretization& discrete() const { return condensed_.discretization(); }
+
+  std::unique_ptr<Neighbour> at(const Quantity& quantity, double z) const {
+    return std::make_unique<Neighbour>(discrete().problem, quantity, z, condensed_, fields_, settings_,
+                                       progress_);
+  }
+
+  /// By neighbours that are so much nearer than what is best.
+  void enclose(const Quantity& quantity, double shorter, EnclosedQuantity& own) {
+    const double radius = enclosure_.radius(), target = size_ > 0 ? relative_step(radius / size_) * size_ : 0;
+    const double response = guessed_response(quantity, discrete().mesh, discrete().problem.material);
+    double z = shorter * (response > 0 && target > 0 ? target / response : 1);
+    std::unique_ptr<Neighbour> plus = at(quantity, z);
+    const double moved = std::sqrt(
+        energy_norm_squares(discrete(), plus->fields().stress - solution_.stress, laws_, progress_).sum());
+    own.value = own.estimate = value_of(quantity, discrete(), fields_, solution_, plus->discretization(), z);
+    const double wanted = shorter * target;
+    if (wanted > 0 && moved > 0 && (moved < kLeastStep * wanted || moved > kMostStep * wanted)) {
+      z *= std::clamp(wanted / moved, 1 / kMostCorrection, kMostCorrection);
+      plus = at(quantity, z);
+    }
+    const CertifiedSolution of_plus = plus->certified(laws_, progress_);
+    add(of_plus.unmet, own.unmet);
+    auto [lower, upper, shares] = bounds(quantity, of_plus, z, own);
+    own.lower = lower;
+    own.upper = upper;
+    // The largest that there is in memory, and asked for by a mesh that refines itself alone.
+    const std::optional<Adaptive>& adaptive = discrete().problem.mesh.adaptive;
+    if (adaptive && adaptive->quantity == quantity.name) own.shares = std::move(shares);
+    if (own.is_bounded() && !(lower <= own.value && own.value <= upper)) own.estimate = (lower + upper) / 2;
+    if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
+  }
+
+  QuantityEnclosure::Bounds bounds(const Quantity& quantity, const CertifiedSolution& plus, double z,
+                                   EnclosedQuantity& own) {
+    if (is_admissible_reflected(base_, plus, quantity, z, progress_))
+      return enclosure_.reflected(quantity, plus, z);
+    const std::unique_ptr<Neighbour> minus = at(quantity, -z);
+    const CertifiedSolution of_minus = minus->certified(laws_, progress_);
+    add(of_minus.unmet, own.unmet);
+    return enclosure_(quantity, plus, of_minus, z);
+  }
+
+  const CondensedProblem& condensed_;
+  const Fields& fields_;
+  const Solution& solution_;
+  const Settings& settings_;
+  Progress& progress_;
+  const LawOnMesh laws_;
+  const CertifiedSolution base_;
+  const QuantityEnclosure enclosure_;
+  const double size_;  ///< ‖σ_h‖_C
+};
+
+}  // namespace
+
+void enclose_quantities(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
+                        const Settings& settings, Certificate& certificate, Progress& progress) {
+  const std::vector<Quantity>& quantities = condensed.discretization().problem.quantities;
+  if (quantities.empty() || !certificate.has_bound()) return;
+  SilentObserver silent(progress.observer());
+  Progress within(silent, progress.time_left());
+  Encloser enclose(condensed, fields, solution, certificate.bound.relative, settings, within);
+  for (const Quantity& quantity : quantities) certificate.quantities.push_back(enclose(quantity));
+}
+
+}  // namespace signorini

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "certify/certificate.hpp"
+#include "run/condensed_problem.hpp"
+
+namespace signorini {
+
+/// Adds to a certificate what the problem asks for, if there is a bound, by the solutions of neighbouring
+/// problems with the operator at hand (certify/THEORY.md, section 9). `fields`, `solution`: of the condensed
+/// problem.
+void enclose_quantities(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
+                        const Settings& settings, Certificate& certificate, Progress& progress);
+
+}  // namespace signorini

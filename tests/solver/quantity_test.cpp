@@ -1,0 +1,270 @@
+// Intervals of quantities against exact values, against each other, and against much finer meshes.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "problems/elasticity.hpp"
+#include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
+#include "solve.hpp"
+
+namespace signorini::quantity_test {
+namespace {
+
+using problems::digits;
+using problems::formula;
+using problems::SignoriniEdge;
+
+Quantity pressure_force(const std::string& part, const Field& weight) {
+  Quantity quantity;
+  quantity.name = "pressure on " + part;
+  quantity.weights = {{part, weight}};
+  return quantity;
+}
+
+Quantity reaction(const std::string& part, const SupportMotion& motion) {
+  Quantity quantity;
+  quantity.name = "reaction of " + part;
+  quantity.motions = {{part, motion}};
+  return quantity;
+}
+
+Quantity mean_on(const std::string& part, const VectorField& density) {
+  Quantity quantity;
+  quantity.name = "displacement of " + part;
+  quantity.densities = {{part, density}};
+  return quantity;
+}
+
+Quantity mean_in(const std::string& name, const VectorField& density) {
+  Quantity quantity;
+  quantity.name = name;
+  quantity.density = density;
+  return quantity;
+}
+
+std::vector<EnclosedQuantity> enclosed(const Problem& problem) {
+  return solve(problem, {ActiveSet{}, {}}).summary.quantities;
+}
+
+/// A block that hangs from above and sags onto a curved foundation.
+Problem block(Scheme scheme, int n) {
+  Problem problem;
+  problem.scheme = scheme;
+  problem.mesh = MeshRequest(Divisions{n, n});
+  problem.material = YoungPoisson{Field(200), Field(0.3), Plane::strain};
+  problem.body = VectorField(Field(0), Field(-4));
+  problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{formula("0.01 * (2*x - 1)^2")}}};
+  problem.quantities = {pressure_force("bottom", Field(1))};
+  return problem;
+}
+
+struct Goal {
+  Scheme scheme;
+  int divisions;
+  double width;
+};
+
+class QuantityOfTheEdge : public testing::TestWithParam<Goal> {};
+
+/// p = 3/2 √−x for x < 0, so that ∫ (1 − |x|) p = 2/5.
+TEST_P(QuantityOfTheEdge, IsEnclosedClosely) {
+  const auto [scheme, n, width] = GetParam();
+  Problem problem = SignoriniEdge::problem(scheme, n);
+  problem.quantities = {pressure_force("bottom", formula("1 - abs(x)"))};
+  const EnclosedQuantity force = enclosed(problem).at(0);
+  EXPECT_TRUE(force.guaranteed) << (force.unmet.empty() ? "" : force.unmet.front());
+  EXPECT_LE(force.lower, 0.4);
+  EXPECT_GE(force.upper, 0.4);
+  EXPECT_LE((force.upper - force.lower) / 0.4, width);
+  EXPECT_GE(force.estimate, force.lower);
+  EXPECT_LE(force.estimate, force.upper);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Schemes, QuantityOfTheEdge,
+    testing::Values(Goal{Scheme::conforming, 16, 4e-3},
+                    Goal{Scheme::conforming, sanitized ? 32 : 128, 1e-4 * (sanitized ? 16 : 1)},
+                    Goal{Scheme::nonconforming, 16, 0.1},
+                    Goal{Scheme::nonconforming, sanitized ? 32 : 128, 0.01 * (sanitized ? 4 : 1)}));
+
+TEST(QuantityOfABlock, HasWidthsThatFallFasterThanTheBound) {
+  std::vector<double> widths, bounds;
+  double lower = 0, upper = 10;
+  for (const int n : {8, 16, 32, 64}) {
+    if (sanitized && n == 64) continue;
+    const Summary summary = solve(block(Scheme::conforming, n), {ActiveSet{}, {}}).summary;
+    const EnclosedQuantity& force = summary.quantities.at(0);
+    ASSERT_TRUE(force.guaranteed);
+    lower = std::max(lower, force.lower);
+    upper = std::min(upper, force.upper);
+    widths.push_back(force.relative_width());
+    bounds.push_back(summary.error_bound->relative);
+  }
+  EXPECT_LE(lower, upper);  // all contain the truth
+  EXPECT_LE(widths[1], 0.025);
+  if (!sanitized) {
+    EXPECT_LE(widths[3], 0.006);
+  }
+  EXPECT_GE(std::log(widths.front() / widths.back()), 1.25 * std::log(bounds.front() / bounds.back()));
+}
+
+/// What the top takes is what acts from below and the weight; of moments the same.
+TEST(QuantityOfABlock, IsInBalanceWithTheOthers) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    Problem problem = block(scheme, 16);
+    problem.quantities.push_back(reaction("top", {{0, 1}, 0}));
+    problem.quantities.push_back(reaction("top", {{0, 0}, 1}));
+    problem.quantities.push_back(pressure_force("bottom", formula("x")));
+    const auto all = enclosed(problem);
+    for (const EnclosedQuantity& own : all) EXPECT_TRUE(own.guaranteed);
+    EXPECT_LE(all[0].lower + all[1].lower, 4);
+    EXPECT_GE(all[0].upper + all[1].upper, 4);
+    EXPECT_NEAR(all[0].value + all[1].value, 4, 1e-9);
+    // The moment of the weight about the origin is 2.
+    EXPECT_LE(all[2].lower + all[3].lower, 2);
+    EXPECT_GE(all[2].upper + all[3].upper, 2);
+    EXPECT_NEAR(all[2].value + all[3].value, 2, 1e-3);
+  }
+}
+
+/// ℓ(u) = −2 J(u) where nothing is fixed but at 0, and the foundation touches at rest.
+TEST(QuantityOfTheLoads, IsTwiceTheEnergy) {
+  Problem problem = problems::paper(Scheme::conforming, 8);
+  for (auto& [part, condition] : problem.boundary)
+    if (auto* contact = std::get_if<Contact>(&condition)) contact->gap = Field(0);
+  problem.body = VectorField(formula("4 - 9*x*y"));
+  problem.quantities = {mean_in("work", problem.body)};
+  const Summary summary = solve(problem, {ActiveSet{}, {}}).summary;
+  const EnclosedQuantity& work = summary.quantities.at(0);
+  EXPECT_TRUE(work.guaranteed);
+  EXPECT_LE(work.lower, -2 * summary.error_bound->energy_lower);
+  EXPECT_GE(work.upper, -2 * summary.error_bound->energy_upper);
+}
+
+/// A block that is lowered onto an even foundation is pressed evenly: all spaces contain the solution.
+TEST(QuantityOfAPatchTest, IsKnownToRounding) {
+  for (const double scale : {1., 1e-9, 1e9}) {
+    Problem problem = problems::lowered_block(Scheme::conforming, Pattern::right, 0.3, 0.01, 0.03);
+    problem.quantities = {pressure_force("bottom", Field(1))};
+    const EnclosedQuantity force = enclosed(problem).at(0);
+    EXPECT_TRUE(force.guaranteed);
+    EXPECT_LE(force.relative_width(), 1e-9) << force.lower << " " << force.upper;
+    EXPECT_NEAR(force.value / force.estimate, 1, 1e-9);
+    (void)scale;
+  }
+}
+
+/// Where what is weighed touches beside what is fixed, no bound of the energy bounds it.
+TEST(QuantityBesideASupport, IsNotClaimed) {
+  Problem problem = problems::paper(Scheme::conforming, 8);
+  for (auto& [part, condition] : problem.boundary)
+    if (std::holds_alternative<Contact>(condition)) {
+      std::get<Contact>(condition).gap = Field(0);
+      problem.quantities = {pressure_force(part, Field(1))};
+    }
+  const EnclosedQuantity force = enclosed(problem).at(0);
+  EXPECT_FALSE(force.guaranteed);
+  ASSERT_FALSE(force.unmet.empty());
+}
+
+double between(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+Field random_formula(std::mt19937& random, double mean, double size) {
+  return formula(digits(mean) + " + " + digits(between(random, -size, size)) + "*sin(" +
+                 digits(between(random, 1, 4)) + "*x + " + digits(between(random, 0, 6)) + ") + " +
+                 digits(between(random, -size, size)) + "*y*x");
+}
+
+Problem random_membrane(unsigned seed) {
+  std::mt19937 random(seed);
+  Problem problem;
+  problem.scheme = seed % 2 ? Scheme::conforming : Scheme::nonconforming;
+  problem.domain = Rectangle{{0, 0}, {between(random, 0.6, 2), between(random, 0.6, 2)}};
+  const double width = std::get<Rectangle>(problem.domain).size.x();
+  problem.mesh = MeshRequest(Divisions{6, 6}, seed % 3 ? Pattern::right : Pattern::crossed);
+  if (seed % 4 == 0) problem.material = MembraneStiffness::isotropic(formula("1 + 0.5*sin(3*x)*y"));
+  problem.body = VectorField(random_formula(random, -2, 6));
+  if (seed % 5 == 0) problem.body = VectorField(formula("x < 0.31 ? 9 : -7"));
+  problem.boundary = {{"top", Fixed{VectorField(random_formula(random, 0, 0.1))}},
+                      {"bottom", Contact{random_formula(random, 0.02, 0.05)}},
+                      {"right", Traction{VectorField(random_formula(random, 0, 1))}}};
+  if (seed % 3 == 0) problem.boundary["left"] = Contact{random_formula(random, 0.3, 0.1)};
+  const std::string span = digits(width);
+  problem.quantities = {pressure_force("bottom", formula("x * (" + span + " - x)")),
+                        pressure_force("bottom", formula("max(0, min(x, " + span + " / 2 - x))")),
+                        mean_on("right", VectorField(formula("y"))),
+                        mean_in("disc", VectorField(formula("(x-0.3)^2 + (y-0.3)^2 < 0.04 ? 8 : 0"))),
+                        reaction("top", {{1, 0}, 0})};
+  return problem;
+}
+
+Problem random_body(unsigned seed) {
+  std::mt19937 random(1000 + seed);
+  Problem problem;
+  problem.scheme = seed % 2 ? Scheme::conforming : Scheme::nonconforming;
+  const double poisson[] = {0, 0.3, 0.45, 0.4999};
+  problem.material = YoungPoisson{Field(between(random, 50, 300)), Field(poisson[seed % 4]), Plane::strain};
+  if (seed % 3 == 0) {
+    problem.domain = Polygon{{{0, 0}, {1.3, 0}, {1.3, 0.9}, {0, 1.1}},
+                             {{{0.4, 0.4}, {0.7, 0.4}, {0.6, 0.7}}},
+                             {"bottom", "right", "top", "left"}};
+    problem.mesh = MeshRequest(LargestEdge{0.25});
+  } else {
+    problem.mesh = MeshRequest(Divisions{5, 5});
+  }
+  problem.body = VectorField(random_formula(random, 0, 2), random_formula(random, -6, 3));
+  problem.boundary = {{"top", Fixed{VectorField(Field(0), random_formula(random, 0, 0.01))}},
+                      {"bottom", Contact{random_formula(random, 0.005, 0.01)}},
+                      {"right", Pressure{random_formula(random, 1, 2)}}};
+  if (seed % 5 == 0) problem.boundary["left"] = Contact{random_formula(random, 0.005, 0.005), {-1, -0.2}};
+  problem.quantities = {
+      pressure_force("bottom", formula("1 + x")),
+      pressure_force("bottom", formula("max(0, 0.4 - abs(x - 0.5))")),
+      mean_on("right", VectorField(Field(1), Field(0))),
+      mean_in("disc", VectorField(Field(0), formula("(x-0.2)^2 + (y-0.2)^2 < 0.02 ? 9 : 0"))),
+      reaction("top", {{0, 1}, 0}),
+      reaction("top", {{0, 0}, 1})};
+  return problem;
+}
+
+class RandomQuantities : public testing::TestWithParam<unsigned> {};
+
+/// What is known on sixteen times the triangles lies inside, up to what that does not know itself.
+void expect_enclosed(Problem problem) {
+  const auto coarse = enclosed(problem);
+  problem.mesh.refine += 2;
+  const auto fine = enclosed(problem);
+  ASSERT_EQ(coarse.size(), fine.size());
+  for (std::size_t i = 0; i < coarse.size(); ++i) {
+    const EnclosedQuantity &own = coarse[i], &better = fine[i];
+    if (!own.guaranteed || !better.guaranteed) {
+      for (const auto& why : own.unmet) std::printf("unmet %s: %s\n", own.name.c_str(), why.c_str());
+      for (const auto& why : better.unmet)
+        std::printf("unmet (fine) %s: %s\n", own.name.c_str(), why.c_str());
+      continue;
+    }
+    EXPECT_LE(own.lower, better.estimate) << own.name;
+    EXPECT_GE(own.upper, better.estimate) << own.name;
+    EXPECT_LE(better.lower, own.upper) << own.name;
+    EXPECT_GE(better.upper, own.lower) << own.name;
+    std::printf("%-28s %12.5g in [%12.5g, %12.5g], fine [%12.5g, %12.5g]\n", own.name.c_str(), own.value,
+                own.lower, own.upper, better.lower, better.upper);
+  }
+}
+
+TEST_P(RandomQuantities, OfMembranesAreEnclosed) {
+  expect_enclosed(random_membrane(GetParam()));
+}
+
+TEST_P(RandomQuantities, OfBodiesAreEnclosed) {
+  expect_enclosed(random_body(GetParam()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomQuantities, testing::Range(0u, sanitized ? 3u : 8u));
+
+}  // namespace
+}  // namespace signorini::quantity_test
