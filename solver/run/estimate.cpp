@@ -318,6 +318,7 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
                          counts.across};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
+  if (!problem_.quantities.empty()) estimate.memory_bytes += memory_of_neighbours(spaces, sizes.triangles);
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);

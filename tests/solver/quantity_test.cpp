@@ -110,6 +110,16 @@ TEST(QuantityOfABlock, HasWidthsThatFallFasterThanTheBound) {
   EXPECT_GE(std::log(widths.front() / widths.back()), 1.25 * std::log(bounds.front() / bounds.back()));
 }
 
+TEST(QuantityOfABlock, IsForeseenInMemory) {
+  if (sanitized) GTEST_SKIP() << "memory is counted without sanitizers";
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    const Problem problem = block(scheme, 64);
+    const auto peak = static_cast<double>(solve(problem, {ActiveSet{}, {}}).summary.peak_memory_bytes);
+    EXPECT_LE(peak, estimate(problem).memory_bytes);
+    EXPECT_GE(2 * peak, estimate(problem).memory_bytes);
+  }
+}
+
 /// What the top takes is what acts from below and the weight; of moments the same.
 TEST(QuantityOfABlock, IsInBalanceWithTheOthers) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
