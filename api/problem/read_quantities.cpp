@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -17,6 +16,11 @@ std::string digits(double value) {
   text.precision(17);
   text << '(' << value << ')';
   return text.str();
+}
+
+/// Doubles hold its square, and one over that.
+bool has_a_square(double length) {
+  return std::isnormal(length * length) && std::isnormal(1 / (length * length));
 }
 
 /// (x − from)·(to − from) / |to − from|²: 0 at the one point, 1 at the other.
@@ -41,6 +45,10 @@ std::optional<std::vector<Point>> read_points(const Value& value, std::size_t co
     if (!point) return std::nullopt;
     if (!points.empty() && points.back() == *point) {
       entry.fault("is the point before it: give points one after the other along the part");
+      return std::nullopt;
+    }
+    if (!points.empty() && !has_a_square((*point - points.back()).norm())) {
+      entry.fault("is nearer to the point before it, or further off, than double precision can tell");
       return std::nullopt;
     }
     points.push_back(*point);
@@ -68,6 +76,10 @@ std::optional<Field> read_linear(const Value& value) {
   const Point from(ends[0][0], ends[0][1]), to(ends[1][0], ends[1][1]);
   if (from == to) {
     value.fault("has the same point twice: give two points of the part");
+    return std::nullopt;
+  }
+  if (!has_a_square((to - from).norm()) || !std::isfinite(ends[1][2] - ends[0][2])) {
+    value.fault("has points or weights that differ by less or more than double precision can tell");
     return std::nullopt;
   }
   return formula(value,
@@ -194,7 +206,7 @@ class Quantities {
                : std::nullopt;
     SupportMotion motion{{1, 0}, 0};
     const auto about = object.find("about");
-    if (model_ == Model::elasticity && about.has_value() == object.find("direction").has_value())
+    if (member && model_ == Model::elasticity && about.has_value() == object.find("direction").has_value())
       member->fault("needs either a direction, of the force, or a point that the moment is about");
     if (about && model_ == Model::membrane) about->fault("a membrane has no moments: leave it out");
     if (about) {
@@ -237,6 +249,10 @@ class Quantities {
     const auto centre = centre_value ? read_pair(*centre_value, "a point, [x, y]", false) : std::nullopt;
     const auto radius = radius_value ? radius_value->positive() : std::nullopt;
     if (!centre || !radius) return;
+    if (!has_a_square(*radius)) {
+      radius_value->fault("is smaller or larger than double precision can square");
+      return;
+    }
     const std::string square = digits(*radius * *radius);
     const Field density = formula(value, "(x - " + digits(centre->x()) + ")^2 + (y - " + digits(centre->y()) +
                                              ")^2 < " + square + " ? 1 / (pi * " + square + ") : 0");
