@@ -145,6 +145,12 @@ Point Mesh::centroid(int triangle) const {
   return (points[a] + points[b] + points[c]) / 3;
 }
 
+double Mesh::diameter() const {
+  Point low = points[0], high = low;
+  for (const Point& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return (high - low).norm();
+}
+
 double Mesh::area() const {
   double sum = 0;
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {

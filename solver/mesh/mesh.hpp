@@ -74,6 +74,8 @@ struct Mesh {
 
   /// The area of the domain.
   double area() const;
+  /// Of the smallest box around it with sides along x and y.
+  double diameter() const;
   /// The memory that it takes.
   std::size_t bytes() const;
 };

@@ -39,6 +39,9 @@ struct Quantity {
   std::map<std::string, SupportMotion> motions;  ///< ρ, by parts
   bool is_mean = false;                          ///< it is divided by the length of the parts with a density
   std::optional<Disc> disc;                      ///< in which alone q is not 0; it must lie in the domain
+
+  /// Its neighbours have the loads of the problem.
+  bool has_no_loads() const { return density.size() == 0 && densities.empty(); }
 };
 
 /// The problem with the gaps g + z w, the load f + z q, the tractions t + z r and the fixed values u_D − z ρ.

@@ -25,12 +25,6 @@ double farthest(const ClearanceSpace& space) {
   return most;
 }
 
-double diameter(const Mesh& mesh) {
-  Point low = mesh.points[0], high = low;
-  for (const Point& x : mesh.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  return (high - low).norm();
-}
-
 /// The forces on the contact unknowns by the stress, w p.
 Eigen::VectorXd forces_on_unknowns(const Discretization& discrete, const Eigen::MatrixXd& stress,
                                    Eigen::Index count) {
@@ -87,7 +81,7 @@ void CondensedProblem::condense(Progress& progress) {
 Fields CondensedProblem::find(const Method& method, Progress& progress, const Eigen::VectorXd& given) {
   const double whole = farthest(discretization_->clearance);
   Eigen::VectorXd start = given;
-  if (whole <= kFar * diameter(discretization_->mesh)) {
+  if (whole <= kFar * discretization_->mesh.diameter()) {
     Fields fields = find_as_posed(method, progress, start);
     if (!is_far(discretization_->clearance, fields.displacement.lpNorm<Eigen::Infinity>())) return fields;
     start = fields.clearance;

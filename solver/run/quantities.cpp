@@ -8,6 +8,8 @@
 #include "certify/quantities/quantity_enclosure.hpp"
 #include "certify/quantities/reflection.hpp"
 #include "contact/residuals.hpp"
+#include "fem/edge_pieces.hpp"
+#include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
 
 namespace signorini {
@@ -51,17 +53,11 @@ double largest_of(const Field& field, const Mesh& mesh, const std::vector<int>& 
   return most;
 }
 
-double diameter_of(const Mesh& mesh) {
-  Point low = mesh.points[0], high = low;
-  for (const Point& x : mesh.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  return (high - low).norm();
-}
-
 /// About what the stress changes by per z, in the norm of C: in two dimensions the energy of a body whose
 /// boundary moves by w is E w², that of one on which the force F acts is F² / E, whatever its size.
 double guessed_response(const Quantity& quantity, const Mesh& mesh, const Material& material) {
   const double root = std::sqrt(compliance_at(material, mesh.centroid(0)).diagonal().maxCoeff()),
-               length = diameter_of(mesh);
+               length = mesh.diameter();
   double moved = 0, force = 0;
   for (const BoundaryPart& part : mesh.boundary) {
     if (const auto found = quantity.weights.find(part.name); found != quantity.weights.end())
@@ -116,19 +112,56 @@ class Neighbour {
   Solution solution_;
 };
 
-/// Q of the discrete solution: what the discrete data differ by towards a neighbour, per z, does its work on
-/// it.
-double value_of(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
-                const Solution& solution, const Discretization& other, double z) {
-  double sum = (other.load - discrete.load).cwiseProduct(fields.displacement).sum() / z;
+/// The problem with the loads of a quantity alone.
+Problem loaded_by(const Quantity& quantity, Problem problem) {
+  problem.body = {};
+  for (auto& [part, condition] : problem.boundary)
+    if (std::holds_alternative<Traction>(condition) || std::holds_alternative<Pressure>(condition))
+      condition = Traction{};
+  Quantity loads;
+  loads.density = quantity.density;
+  loads.densities = quantity.densities;
+  return neighbour(problem, loads, 1);
+}
+
+/// (q, u_h) + <r, u_h>.
+double work_of_densities(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
+                         Progress& progress) {
+  if (quantity.has_no_loads()) return 0;
+  const Problem problem = loaded_by(quantity, discrete.problem);
+  const Discretization loaded(problem, discrete.mesh, &progress);
   const Eigen::Index free = discrete.traces.free_unknowns();
-  sum += (other.coupling_load - discrete.coupling_load).head(free).dot(fields.coupling.head(free)) / z;
+  return loaded.load.cwiseProduct(fields.displacement).sum() +
+         loaded.coupling_load.head(free).dot(fields.coupling.head(free));
+}
+
+/// The mean of a weight over each edge (P0), or its value at each node (P1), an entry a row.
+Eigen::VectorXd on_rows(const std::map<std::string, Field>& weights, const Discretization& discrete) {
+  const Mesh& mesh = discrete.mesh;
+  const ClearanceSpace& space = discrete.clearance;
+  const int order = discrete.spaces().order;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.rows.size()));
+  for (const ContactEdge& contact : space.edges) {
+    const auto weight = weights.find(mesh.boundary[space.rows[contact.rows[0]].part].name);
+    if (weight == weights.end()) continue;
+    const EdgeLine line(mesh, contact.edge);
+    const auto value = [&](double s) { return line.value(weight->second, s); };
+    if (order == 0)
+      all[contact.rows[0]] = project_onto_edge(0, edge_moments(0, value))[0];
+    else
+      for (const int k : {0, 1}) all[contact.rows[k]] = value(k);
+  }
+  return all;
+}
+
+/// Q of the discrete solution.
+double value_of(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
+                const Solution& solution, Progress& progress) {
   Eigen::VectorXd forces;
   contact_forces(
       discrete, [&](int t) -> LocalVector { return solution.stress.col(t); }, forces);
-  const auto& rows = discrete.clearance.rows;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    sum += forces[static_cast<Eigen::Index>(i)] * (other.clearance.rows[i].gap - rows[i].gap) / z;
+  double sum = work_of_densities(quantity, discrete, fields, progress) +
+               on_rows(quantity.weights, discrete).dot(forces);
   for (const Reaction& reaction : solution.summary.parts)
     if (const auto found = quantity.motions.find(reaction.part); found != quantity.motions.end()) {
       for (std::size_t c = 0; c < reaction.force.size(); ++c)
@@ -163,6 +196,7 @@ class Encloser {
   EnclosedQuantity operator()(const Quantity& quantity) {
     EnclosedQuantity own;
     own.name = quantity.name;
+    own.value = own.estimate = value_of(quantity, discrete(), fields_, solution_, progress_);
     double shorter = 1;
     for (int tries = 0; tries < kTries; ++tries, shorter *= kShorter) {
       own.unmet = base_.unmet;
@@ -177,6 +211,12 @@ class Encloser {
       }
     }
     own.guaranteed = own.is_bounded() && own.unmet.empty();
+    if (own.is_bounded() && !(own.lower <= own.value && own.value <= own.upper))
+      own.estimate = (own.lower + own.upper) / 2;
+    if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
+    if (!std::isfinite(own.value) || !std::isfinite(own.estimate))
+      throw SolveError("the numbers of the quantity " + own.name +
+                       " leave the range of double precision: take a smaller weight");
     return own;
   }
 
@@ -196,7 +236,6 @@ class Encloser {
     std::unique_ptr<Neighbour> plus = at(quantity, z);
     const double moved = std::sqrt(
         energy_norm_squares(discrete(), plus->fields().stress - solution_.stress, laws_, progress_).sum());
-    own.value = own.estimate = value_of(quantity, discrete(), fields_, solution_, plus->discretization(), z);
     const double wanted = shorter * target;
     if (wanted > 0 && moved > 0 && (moved < kLeastStep * wanted || moved > kMostStep * wanted)) {
       z *= std::clamp(wanted / moved, 1 / kMostCorrection, kMostCorrection);
@@ -210,8 +249,6 @@ class Encloser {
     // The largest that there is in memory, and asked for by a mesh that refines itself alone.
     const std::optional<Adaptive>& adaptive = discrete().problem.mesh.adaptive;
     if (adaptive && adaptive->quantity == quantity.name) own.shares = std::move(shares);
-    if (own.is_bounded() && !(lower <= own.value && own.value <= upper)) own.estimate = (lower + upper) / 2;
-    if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
   }
 
   QuantityEnclosure::Bounds bounds(const Quantity& quantity, const CertifiedSolution& plus, double z,

@@ -267,6 +267,14 @@ double distance_to_edge(const Mesh& mesh, int edge, const Point& x) {
   return (a + s * (b - a) - x).norm();
 }
 
+/// Beside the body and its coordinates. In a smaller disc the sign of a difference of squares is not known,
+/// for rounding is taken to be 1e-14 of them (formula/interval.hpp).
+constexpr double kLeastDisc = 1e-6;
+
+bool can_be_seen(const Mesh& mesh, const Disc& disc) {
+  return disc.radius >= kLeastDisc * std::max(mesh.diameter(), disc.centre.norm());
+}
+
 bool contains(const Mesh& mesh, const Disc& disc) {
   for (const BoundaryPart& part : mesh.boundary)
     for (const int edge : part.edges)
@@ -280,9 +288,16 @@ bool contains(const Mesh& mesh, const Disc& disc) {
 }
 
 void check_discs(const Problem& problem, const Mesh& mesh, std::vector<Fault>& faults) {
-  for (const Quantity& quantity : problem.quantities)
-    if (quantity.disc && !contains(mesh, *quantity.disc))
-      faults.push_back({quantity.disc->name, "must lie in the body: the mean is one over the whole disc"});
+  for (const Quantity& quantity : problem.quantities) {
+    if (!quantity.disc) continue;
+    const auto& [name, disc] = std::tie(quantity.disc->name, *quantity.disc);
+    if (!contains(mesh, disc))
+      faults.push_back({name, "must lie in the body: the mean is one over the whole disc"});
+    else if (!can_be_seen(mesh, disc))
+      faults.push_back({name,
+                        "must have a radius of at least a millionth of the body's size and coordinates: "
+                        "of a smaller one nothing is guaranteed"});
+  }
 }
 
 }  // namespace

@@ -153,16 +153,42 @@ TEST(QuantityOfTheLoads, IsTwiceTheEnergy) {
   EXPECT_GE(work.upper, -2 * summary.error_bound->energy_upper);
 }
 
+/// Its density would be rounding beside the differences by which it is known.
+TEST(QuantityInADisc, IsRefusedWhereNothingIsSeenOfIt) {
+  Problem problem = block(Scheme::conforming, 4);
+  for (const double radius : {0.1, 2e-6, 1e-6, 1e-9, 1e-12}) {
+    const std::string square = digits(radius * radius);
+    Quantity mean = mean_in("disc", VectorField(Field(0), formula("(x-0.51)^2 + (y-0.52)^2 < " + square +
+                                                                  " ? 1 / (pi * " + square + ") : 0")));
+    mean.disc = Disc{{0.51, 0.52}, radius, "/disc"};
+    problem.quantities = {mean};
+    if (radius < 1.4e-6) {
+      EXPECT_THROW(solve(problem, {ActiveSet{}, {}}), InvalidProblem) << radius;
+    } else {
+      const EnclosedQuantity own = enclosed(problem).at(0);
+      EXPECT_TRUE(own.guaranteed);
+      EXPECT_LE(own.lower, -0.0032) << radius;  // by 64 × 64 squares it is −0.00323
+      EXPECT_GE(own.upper, -0.0033) << radius;
+    }
+  }
+}
+
+TEST(QuantityOfABlock, IsRefusedBeyondDoublePrecision) {
+  Problem problem = block(Scheme::conforming, 4);
+  problem.quantities = {pressure_force("bottom", Field(1.7e308))};
+  EXPECT_THROW(solve(problem, {ActiveSet{}, {}}), SolveError);
+}
+
 /// A block that is lowered onto an even foundation is pressed evenly: all spaces contain the solution.
 TEST(QuantityOfAPatchTest, IsKnownToRounding) {
   for (const double scale : {1., 1e-9, 1e9}) {
     Problem problem = problems::lowered_block(Scheme::conforming, Pattern::right, 0.3, 0.01, 0.03);
+    std::get<YoungPoisson>(problem.material).young = Field(3 * scale);
     problem.quantities = {pressure_force("bottom", Field(1))};
     const EnclosedQuantity force = enclosed(problem).at(0);
     EXPECT_TRUE(force.guaranteed);
     EXPECT_LE(force.relative_width(), 1e-9) << force.lower << " " << force.upper;
     EXPECT_NEAR(force.value / force.estimate, 1, 1e-9);
-    (void)scale;
   }
 }
 
@@ -177,6 +203,7 @@ TEST(QuantityBesideASupport, IsNotClaimed) {
   const EnclosedQuantity force = enclosed(problem).at(0);
   EXPECT_FALSE(force.guaranteed);
   ASSERT_FALSE(force.unmet.empty());
+  EXPECT_GT(force.value, 0.1);
 }
 
 double between(std::mt19937& random, double low, double high) {
@@ -249,21 +276,18 @@ void expect_enclosed(Problem problem) {
   problem.mesh.refine += 2;
   const auto fine = enclosed(problem);
   ASSERT_EQ(coarse.size(), fine.size());
+  std::size_t guaranteed = 0;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     const EnclosedQuantity &own = coarse[i], &better = fine[i];
-    if (!own.guaranteed || !better.guaranteed) {
-      for (const auto& why : own.unmet) std::printf("unmet %s: %s\n", own.name.c_str(), why.c_str());
-      for (const auto& why : better.unmet)
-        std::printf("unmet (fine) %s: %s\n", own.name.c_str(), why.c_str());
-      continue;
-    }
+    if (!own.guaranteed || !better.guaranteed) continue;
+    ++guaranteed;
     EXPECT_LE(own.lower, better.estimate) << own.name;
     EXPECT_GE(own.upper, better.estimate) << own.name;
     EXPECT_LE(better.lower, own.upper) << own.name;
     EXPECT_GE(better.upper, own.lower) << own.name;
-    std::printf("%-28s %12.5g in [%12.5g, %12.5g], fine [%12.5g, %12.5g]\n", own.name.c_str(), own.value,
-                own.lower, own.upper, better.lower, better.upper);
   }
+  // A reaction may be none that the energy bounds, where a contact touches beside its support.
+  EXPECT_GE(guaranteed + 1, coarse.size());
 }
 
 TEST_P(RandomQuantities, OfMembranesAreEnclosed) {
