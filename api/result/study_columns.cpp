@@ -101,15 +101,15 @@ Cell cell_of(const std::optional<double>& number) {
   return number ? Cell(*number) : Cell();
 }
 
-const std::vector<NamedQuantity>& falling_quantities() {
-  static const std::vector<NamedQuantity> quantities{
+const std::vector<NamedNumber>& falling_numbers() {
+  static const std::vector<NamedNumber> numbers{
       {"bound", bound_of},
       {"displacement_error", [](const StudyRow& row) { return row.errors.displacement; }},
       {"stress_error", [](const StudyRow& row) { return row.errors.stress; }},
       {"energy_norm_error", [](const StudyRow& row) { return row.errors.energy_norm; }},
       {"energy_error", [](const StudyRow& row) { return row.errors.energy; }},
       {"total_error", [](const StudyRow& row) { return row.errors.total; }}};
-  return quantities;
+  return numbers;
 }
 
 namespace {
@@ -132,8 +132,8 @@ CellOfRow of_quantity(std::size_t i, double EnclosedQuantity::*number) {
 
 }  // namespace
 
-std::vector<NamedQuantity> widths_of_intervals(const std::vector<StudyRow>& rows) {
-  std::vector<NamedQuantity> widths;
+std::vector<NamedNumber> widths_of_intervals(const std::vector<StudyRow>& rows) {
+  std::vector<NamedNumber> widths;
   for (const EnclosedQuantity& quantity : named_quantities(rows))
     widths.push_back({quantity.name + ".width", [i = widths.size()](const StudyRow& row) {
                         const bool is_known = i < row.quantities.size() && row.quantities[i].is_bounded();
@@ -156,7 +156,7 @@ std::vector<StudyColumn> study_columns(const std::vector<StudyRow>& rows) {
     return Cell(std::string(name_in(scheme_names, rows[row].scheme)));
   });
   columns.add(columns_of_sizes());
-  for (const auto& [name, value] : falling_quantities()) {
+  for (const auto& [name, value] : falling_numbers()) {
     columns.add(name, [&rows, &value = value](std::size_t row) {
       return rows[row].error.empty() ? cell_of(value(rows[row])) : Cell();
     });
@@ -165,7 +165,7 @@ std::vector<StudyColumn> study_columns(const std::vector<StudyRow>& rows) {
     });
   }
   columns.add(columns_of_bound());
-  const std::vector<NamedQuantity> widths = widths_of_intervals(rows);
+  const std::vector<NamedNumber> widths = widths_of_intervals(rows);
   for (std::size_t i = 0; i < widths.size(); ++i) {
     const std::string& name = named_quantities(rows)[i].name;
     columns.add(name + ".estimate", of_row(rows, of_quantity(i, &EnclosedQuantity::estimate)));

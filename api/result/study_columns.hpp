@@ -25,14 +25,14 @@ struct StudyColumn {
 std::vector<StudyColumn> study_columns(const std::vector<StudyRow>& rows);
 
 /// The numbers that have a rate: the bound and the errors, by the names of their columns.
-struct NamedQuantity {
+struct NamedNumber {
   std::string name;
   RowNumber value;
 };
-const std::vector<NamedQuantity>& falling_quantities();
+const std::vector<NamedNumber>& falling_numbers();
 
 /// `NAME.width` of each quantity that the problem asks for: the widths of their intervals.
-std::vector<NamedQuantity> widths_of_intervals(const std::vector<StudyRow>& rows);
+std::vector<NamedNumber> widths_of_intervals(const std::vector<StudyRow>& rows);
 
 /// The schemes of the rows in their order.
 std::vector<Scheme> schemes_of(const std::vector<StudyRow>& rows);

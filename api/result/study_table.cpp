@@ -33,7 +33,7 @@ struct TextColumn {
 };
 
 std::string fitted(const std::vector<StudyRow>& rows, Scheme scheme, const std::string& column) {
-  for (const auto& [name, value] : falling_quantities())
+  for (const auto& [name, value] : falling_numbers())
     if (column == name + "_rate") return std::visit(TextOfCell{}, cell_of(fitted_rate(rows, scheme, value)));
   return column == "triangles" ? "fitted" : "";
 }

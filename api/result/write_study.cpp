@@ -19,7 +19,7 @@ struct WriteCell {
 
 void write_fitted_rates(DocumentWriter& out, const std::vector<StudyRow>& rows, Scheme scheme) {
   out.begin_object().member("scheme", name_in(scheme_names, scheme));
-  for (const auto& [name, value] : falling_quantities())
+  for (const auto& [name, value] : falling_numbers())
     if (const auto rate = fitted_rate(rows, scheme, value)) out.member(name, *rate);
   for (const auto& [name, value] : widths_of_intervals(rows))
     if (const auto rate = fitted_rate(rows, scheme, value)) out.member(name, *rate);

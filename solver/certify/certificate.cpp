@@ -81,7 +81,7 @@ Certificate without_bound(const std::vector<Fault>& faults) {
 
 Certificate certify_sound_data(const Discretization& discrete, const Solution& solution,
                                const Eigen::VectorXd& coupling, Progress& progress) {
-  const AdmissiblePair pair = admissible_pair(discrete, solution, coupling, progress);
+  AdmissiblePair pair = admissible_pair(discrete, solution, coupling, progress);
   Certificate certificate;
   const double tolerance = kOfGap * std::min(1., estimate_gap(discrete, solution.stress, pair.v, progress));
   const LawOnMesh laws(discrete.problem.material, discrete.mesh, tolerance, progress);
@@ -110,6 +110,8 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
+  if (!discrete.problem.quantities.empty())
+    certificate.pair = std::make_unique<AdmissiblePair>(std::move(pair));
   return certificate;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 
+#include "certify/admissible_pair.hpp"
 #include "fem/discretization.hpp"
 #include "progress/progress.hpp"
 #include "result/solution.hpp"
@@ -15,6 +17,8 @@ struct Certificate {
   Eigen::VectorXd squares;
   /// Solution::admissible_pressure.
   std::vector<EdgePressure> pressure;
+  /// v and σ* without patches, where the problem asks for quantities; refers to the discretization.
+  std::unique_ptr<AdmissiblePair> pair;
   std::vector<EnclosedQuantity> quantities;  ///< that the problem asks for, if there is a bound
 
   bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }

@@ -6,6 +6,7 @@
 
 #include "certify/data/oscillation.hpp"
 #include "certify/pressure/contact_terms.hpp"
+#include "certify/traction_work.hpp"
 
 namespace signorini {
 namespace {
@@ -49,28 +50,10 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
     shares[owner] += own;
     if (second) all.known += terms(pair.pressure, second->v) + terms(second->pressure, pair.v) - 2 * own;
   }
-  add_work_of_traction<D>(discrete, pair.v, owners);
-}
-
-/// ∫ t·v over Γ_F where the triangles have owners: t − Πt is orthogonal to v there, as far as it is known.
-template <int D>
-void Totals::add_work_of_traction(const Discretization& discrete, const AdmissibleDisplacement& v,
-                                  const Owners& owners) {
-  for (int edge = 0; edge < static_cast<int>(discrete.mesh.edges.size()); ++edge) {
-    const int t = discrete.mesh.edge_triangles[edge][0];
-    if (!discrete.traction.acts_on(edge) || owners[t] < 0) continue;
-    all.energy_slack += discrete.traction[edge].uncertain_work * v.largest_on(t);
-    for (int q = 0; q < EdgeRule::size; ++q) {
-      const double s = edge_rule().points[q];
-      const Eigen::VectorXd value = v.on_edge(edge, s);
-      for (int c = 0; c < D; ++c) {
-        const double own =
-            edge_rule().weights[q] * discrete.mesh.length(edge) * discrete.traction(edge, c, s) * value[c];
-        all.energy -= own;
-        work += std::abs(own);
-      }
-    }
-  }
+  const TractionWork of_traction = work_of_traction(discrete, pair.v, owners);
+  all.energy -= of_traction.value;
+  all.energy_slack += of_traction.slack;
+  work += of_traction.size;
 }
 
 template void Totals::add<1>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, MembraneSums,

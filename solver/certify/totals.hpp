@@ -29,11 +29,6 @@ struct Totals {
   /// The second pair is one with the same uncertain loads: not if p* had to change for them.
   bool second_counts = true;
   Eigen::VectorXd shares;
-
- private:
-  template <int D>
-  void add_work_of_traction(const Discretization& discrete, const AdmissibleDisplacement& v,
-                            const Owners& owners);
 };
 
 /// The least of ‖δ − θ s‖ R + θ K over θ ∈ [0, 1], from ‖δ‖², ‖s‖², (s, δ) and K, each of which may be larger

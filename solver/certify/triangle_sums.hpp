@@ -5,6 +5,7 @@
 #include "certify/elasticity/edge_tractions.hpp"
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
+#include "certify/pair_term.hpp"
 #include "certify/patches/patch_pairs.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
@@ -45,10 +46,7 @@ struct TriangleSums {
 /// beyond that counts twice, in the integral and in the rule, whose weights are positive.
 class MembraneSums {
  public:
-  struct Term {
-    double of_displacement, of_stress;  ///< what v and σ* of the pair count
-    const Discretization& discrete;     ///< which the pair belongs to
-    const Eigen::MatrixXd& stress;      ///< σ_h
+  struct Term : PairTerm {
     const AdmissiblePair& pair;
   };
 
@@ -75,10 +73,6 @@ class MembraneSums {
   static const Rule& rule_of_degree(int order);
   const Rule& rule_for(int degree) const;
   std::optional<QuadraticBalance::Data> balance_on(int t) const;
-  Quadratic<1> displacement_on(int t) const;
-  bool is_lifted(int t) const;
-  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse,
-                 Eigen::Matrix<double, 1, 1>& value, Tensor<1>& slope) const;
   void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
@@ -96,11 +90,7 @@ class MembraneSums {
 /// is linear in them.
 class ElasticSums {
  public:
-  struct Term {
-    double of_displacement, of_stress;
-    const Discretization& discrete;
-    const Eigen::MatrixXd& stress;
-    const AdmissibleDisplacement& v;
+  struct Term : PairTerm {
     const EdgeTractions& tractions;
   };
 
@@ -130,9 +120,6 @@ class ElasticSums {
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
                                               const JohnsonMercierRule& rule) const;
-  bool is_lifted(int t) const;
-  void add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse, Eigen::Vector2d& value,
-                 Tensor<2>& slope) const;
   void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                         const Inner& inner, TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;

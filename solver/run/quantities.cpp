@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "certify/energy_norm.hpp"
 #include "certify/quantities/quantity_enclosure.hpp"
@@ -102,7 +103,8 @@ class Neighbour {
     const Eigen::VectorXd clearance = discretization().clearance.clearance(fields_.clearance);
     solution_.summary.residuals =
         residuals(solution_, clearance, Eigen::VectorXd::Zero(clearance.size()), discretization());
-    return {discretization(), solution_, fields_.coupling, laws, progress};
+    return {discretization(), solution_,
+            admissible_pair(discretization(), solution_, fields_.coupling, progress), laws, progress};
   }
 
  private:
@@ -179,17 +181,17 @@ void add(const std::vector<std::string>& reasons, std::vector<std::string>& all)
 /// Encloses quantities of one solution.
 class Encloser {
  public:
-  /// `relative`: the relative error bound.
-  Encloser(const CondensedProblem& condensed, const Fields& fields, const Solution& solution, double relative,
-           const Settings& settings, Progress& progress)
+  /// Takes the pair of the certificate.
+  Encloser(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
+           const Settings& settings, Certificate& certificate, Progress& progress)
       : condensed_(condensed),
         fields_(fields),
         solution_(solution),
         settings_(settings),
         progress_(progress),
-        laws_(discrete().problem.material, discrete().mesh, kOfRadius * std::min(1., relative * relative),
-              progress),
-        base_(discrete(), solution, fields.coupling, laws_, progress),
+        laws_(discrete().problem.material, discrete().mesh,
+              kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
+        base_(discrete(), solution, std::move(*certificate.pair), laws_, progress),
         enclosure_(base_, laws_, progress),
         size_(std::sqrt(energy_norm_squares(discrete(), solution.stress, laws_, progress).sum())) {}
 
@@ -280,7 +282,7 @@ void enclose_quantities(const CondensedProblem& condensed, const Fields& fields,
   if (quantities.empty() || !certificate.has_bound()) return;
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
-  Encloser enclose(condensed, fields, solution, certificate.bound.relative, settings, within);
+  Encloser enclose(condensed, fields, solution, settings, certificate, within);
   for (const Quantity& quantity : quantities) certificate.quantities.push_back(enclose(quantity));
 }
 

@@ -114,13 +114,13 @@ Settings after(double seconds, Settings settings) {
   return settings;
 }
 
-/// A value of the quantity with the logarithms that a rate is made of.
+/// A value of the number with the logarithms that a rate is made of.
 struct Measured {
   double triangles, value;
 };
 
-std::optional<Measured> measured(const StudyRow& row, const RowNumber& quantity) {
-  const auto value = row.error.empty() ? quantity(row) : std::nullopt;
+std::optional<Measured> measured(const StudyRow& row, const RowNumber& number) {
+  const auto value = row.error.empty() ? number(row) : std::nullopt;
   if (!value || !(*value > 0)) return std::nullopt;
   return Measured{std::log(static_cast<double>(row.triangles)), std::log(*value)};
 }
@@ -193,23 +193,22 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
 }
 
 std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size_t row,
-                                    const RowNumber& quantity) {
-  const auto here = measured(rows[row], quantity);
+                                    const RowNumber& number) {
+  const auto here = measured(rows[row], number);
   if (!here) return std::nullopt;
   for (std::size_t i = row; i-- > 0 && rows[i].scheme == rows[row].scheme;)
-    if (const auto before = measured(rows[i], quantity)) {
+    if (const auto before = measured(rows[i], number)) {
       if (before->triangles == here->triangles) return std::nullopt;
       return -2 * (here->value - before->value) / (here->triangles - before->triangles);
     }
   return std::nullopt;
 }
 
-std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme,
-                                  const RowNumber& quantity) {
+std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme, const RowNumber& number) {
   std::vector<Measured> all;
   Measured mean{0, 0};
   for (const StudyRow& row : rows)
-    if (const auto here = row.scheme == scheme ? measured(row, quantity) : std::nullopt) {
+    if (const auto here = row.scheme == scheme ? measured(row, number) : std::nullopt) {
       all.push_back(*here);
       mean.triangles += here->triangles;
       mean.value += here->value;

@@ -19,14 +19,13 @@ std::vector<StudyRow> run_study(const Problem& problem, const Study& study, cons
 /// A column of a study's table: its number in a row, if there is one.
 using RowNumber = std::function<std::optional<double>(const StudyRow&)>;
 
-/// The exponent α for which the quantity is proportional to n^(−α/2), with n triangles, between the row and
-/// the one of its scheme before it that has the quantity. Where all edges are halved that is h^α. None where
+/// The exponent α for which the number is proportional to n^(−α/2), with n triangles, between the row and
+/// the one of its scheme before it that has one. Where all edges are halved that is h^α. None where
 /// one of both is zero.
 std::optional<double> observed_rate(const std::vector<StudyRow>& rows, std::size_t row,
-                                    const RowNumber& quantity);
+                                    const RowNumber& number);
 
 /// The same by least squares over all rows of the scheme.
-std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme,
-                                  const RowNumber& quantity);
+std::optional<double> fitted_rate(const std::vector<StudyRow>& rows, Scheme scheme, const RowNumber& number);
 
 }  // namespace signorini

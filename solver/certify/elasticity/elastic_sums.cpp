@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 
 #include "certify/data/balanced_load.hpp"
@@ -20,7 +19,7 @@ int degree_of_fields(bool lifted) {
 
 ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
                          const AdmissibleDisplacement& v, const EdgeTractions& tractions)
-    : ElasticSums(discrete, {{1, 1, discrete, solution.stress, v, tractions}}) {
+    : ElasticSums(discrete, {{{1, 1, discrete, solution.stress, v}, tractions}}) {
   needs_all_ = true;
 }
 
@@ -33,31 +32,14 @@ ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
   Given sum{JohnsonMercierData::Zero(),
             LocalVector::Zero(terms_[0].stress.rows()),
-            Eigen::Matrix<double, 12, 1>::Zero(),
+            displacement_on<2>(terms_, t).reshaped(),
             {}};
   for (const Term& term : terms_) {
-    if (term.of_stress != 0) {
-      sum.data += term.of_stress * johnson_mercier_data(term.discrete, term.tractions, t, map);
-      sum.stress += term.of_stress * term.stress.col(t);
-    }
-    sum.displacement += term.of_displacement * term.v.on<2>(t).reshaped();
+    if (term.of_stress == 0) continue;
+    sum.data += term.of_stress * johnson_mercier_data(term.discrete, term.tractions, t, map);
+    sum.stress += term.of_stress * term.stress.col(t);
   }
   return sum;
-}
-
-bool ElasticSums::is_lifted(int t) const {
-  return std::ranges::any_of(terms_, [t](const Term& term) { return term.v.is_lifted(t); });
-}
-
-void ElasticSums::add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse,
-                            Eigen::Vector2d& value, Tensor<2>& slope) const {
-  for (const Term& term : terms_) {
-    Eigen::Vector2d own = Eigen::Vector2d::Zero();
-    Tensor<2> own_slope = Tensor<2>::Zero();
-    term.v.add_lifts<2>(t, reference, inverse, own, own_slope);
-    value += term.of_displacement * own;
-    slope += term.of_displacement * own_slope;
-  }
 }
 
 /// The operators of the triangle's shape, or null.
@@ -76,7 +58,7 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
   for (const JohnsonMercier::Place& place : rule.places) {
     Eigen::Vector2d value = Eigen::Vector2d::Zero();
     Tensor<2> slope = Tensor<2>::Zero();
-    add_lifts(t, place.point, map.jacobian.inverse(), value, slope);
+    add_lifts<2>(terms_, t, place.point, map.jacobian.inverse(), value, slope);
     strains.push_back(mandel(slope));
   }
   return strains;
@@ -97,7 +79,7 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
                            rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
     if (!given.lifted.empty()) {
       Tensor<2> slope = Tensor<2>::Zero();
-      add_lifts(t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
+      add_lifts<2>(terms_, t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
     }
     work += weight * (quadratic * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
     rest_square += weight * rest.squaredNorm();
@@ -109,12 +91,7 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
 
 void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law,
                                     TriangleSums& sums) const {
-  AdmissibleDisplacement::LiftRest rest;
-  for (const Term& term : terms_) {
-    const AdmissibleDisplacement::LiftRest own = term.v.rest_of_lifts(t);
-    rest.value += std::abs(term.of_displacement) * own.value;
-    rest.slope += std::abs(term.of_displacement) * own.slope;
-  }
+  const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
   if (rest.slope == 0) return;
   const ProjectedLoad& load = discrete_.body[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
@@ -169,7 +146,7 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRu
 TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
   const AffineMap map(discrete_.mesh.corners(t));
   Given given = given_on(t, map);
-  const bool lifted = is_lifted(t), constant_law = discrete_.element.has_constant_material();
+  const bool lifted = is_lifted(terms_, t), constant_law = discrete_.element.has_constant_material();
   const JohnsonMercierNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
   const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());

@@ -1,6 +1,5 @@
 #include "certify/triangle_sums.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -52,7 +51,7 @@ MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given,
 
 MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress,
                            const AdmissiblePair& pair)
-    : MembraneSums(discrete, {{1, 1, discrete, stress, pair}}) {}
+    : MembraneSums(discrete, {{{1, 1, discrete, stress, pair.v}, pair}}) {}
 
 MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms)
     : discrete_(discrete), terms_(std::move(terms)) {}
@@ -91,29 +90,8 @@ std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
   return sum;
 }
 
-Quadratic<1> MembraneSums::displacement_on(int t) const {
-  Quadratic<1> sum = Quadratic<1>::Zero();
-  for (const Term& term : terms_) sum += term.of_displacement * term.pair.v.on<1>(t);
-  return sum;
-}
-
-bool MembraneSums::is_lifted(int t) const {
-  return std::ranges::any_of(terms_, [t](const Term& term) { return term.pair.v.is_lifted(t); });
-}
-
-void MembraneSums::add_lifts(int t, const Point& reference, const Eigen::Matrix2d& inverse,
-                             Eigen::Matrix<double, 1, 1>& value, Tensor<1>& slope) const {
-  for (const Term& term : terms_) {
-    Eigen::Matrix<double, 1, 1> own = Eigen::Matrix<double, 1, 1>::Zero();
-    Tensor<1> own_slope = Tensor<1>::Zero();
-    term.pair.v.add_lifts<1>(t, reference, inverse, own, own_slope);
-    value += term.of_displacement * own;
-    slope += term.of_displacement * own_slope;
-  }
-}
-
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
-  const bool lifted = is_lifted(t), cubic = balance_on(t).has_value();
+  const bool lifted = is_lifted(terms_, t), cubic = balance_on(t).has_value();
   const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
   const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
   TriangleSums sums;
@@ -137,14 +115,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
   const ProjectedLoad& load = discrete_.body[t];
   const double area = AffineMap(discrete_.mesh.corners(t)).determinant / 2;
-  AdmissibleDisplacement::LiftRest rest;
-  for (const Term& term : terms_) {
-    const double factor = std::abs(term.of_displacement);
-    const AdmissibleDisplacement::LiftRest own = term.pair.v.rest_of_lifts(t);
-    rest.value += factor * own.value;
-    rest.slope += factor * own.slope;
-  }
-  sums.energy_slack += load.uncertain_work * bound_of_quadratic(displacement_on(t));
+  const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
+  sums.energy_slack += load.uncertain_work * bound_of_quadratic(displacement_on<1>(terms_, t));
   if (rest.slope > 0) {
     const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
     sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
@@ -158,7 +130,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
                              TriangleSums& sums) const {
   const AffineMap map(discrete_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
-  const Quadratic<1> v = displacement_on(t);
+  const Quadratic<1> v = displacement_on<1>(terms_, t);
   Quadratic<1> stream_function = Quadratic<1>::Zero();
   LocalVector stress = LocalVector::Zero(terms_[0].stress.rows());
   for (const Term& term : terms_) {
@@ -172,7 +144,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
   }
   const Quadratic<1> acting = quadratic_load<1>(discrete_, t);
   const std::optional<QuadraticBalance::Data> balance = balance_on(t);
-  const bool curled = !stream_function.isZero(0), lifted = is_lifted(t);
+  const bool curled = !stream_function.isZero(0), lifted = is_lifted(terms_, t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
     const auto& [reference, share] = rule.points[q];
@@ -183,7 +155,7 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
     if (lifted) {
       const double quadratic = value[0];
-      add_lifts(t, reference, inverse, value, slope);
+      add_lifts<1>(terms_, t, reference, inverse, value, slope);
       lifted_square += weight * (value[0] - quadratic) * (value[0] - quadratic);
     }
     Tensor<1> correction = Tensor<1>::Zero();

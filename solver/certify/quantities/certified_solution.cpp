@@ -1,15 +1,17 @@
 #include "certify/quantities/certified_solution.hpp"
 
+#include <utility>
+
 #include "certify/data/oscillation.hpp"
 #include "certify/unmet.hpp"
 
 namespace signorini {
+
 CertifiedSolution::CertifiedSolution(const Discretization& of, const Solution& solution,
-                                     const Eigen::VectorXd& coupling, const LawOnMesh& laws,
-                                     Progress& progress)
+                                     AdmissiblePair admissible, const LawOnMesh& laws, Progress& progress)
     : discrete(of),
       stress(solution.stress),
-      pair(admissible_pair(of, solution, coupling, progress)),
+      pair(std::move(admissible)),
       oscillations(
           signorini::oscillations(of, pair.pressure, laws, std::vector(of.triangles(), 0), progress)),
       loads(carry_uncertain_loads(of, laws, pair.pressure)),

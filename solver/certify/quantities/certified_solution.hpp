@@ -8,8 +8,8 @@ namespace signorini {
 /// A discrete solution with its admissible pair, and with what is known of the stress that makes up for what
 /// σ* does not balance (THEORY.md, section 3).
 struct CertifiedSolution {
-  /// Of a mesh without patches. All arguments but the coupling must outlive it.
-  CertifiedSolution(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& coupling,
+  /// Of a mesh without patches. Discretization and solution must outlive it.
+  CertifiedSolution(const Discretization& discrete, const Solution& solution, AdmissiblePair admissible,
                     const LawOnMesh& laws, Progress& progress);
 
   /// A bound of the part of that stress that is not on single triangles.

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "certify/pressure/contact_terms.hpp"
+#include "certify/traction_work.hpp"
 #include "certify/triangle_sums.hpp"
-#include "fem/lagrange.hpp"
 
 namespace signorini {
 namespace {
@@ -28,11 +28,11 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const Discretization& loads,
   std::vector<typename FieldSums::Term> all;
   for (const Term& term : terms) {
     const CertifiedSolution& own = term.solution;
+    const PairTerm pair{term.of_displacement, term.of_stress, own.discrete, own.stress, own.pair.v};
     if constexpr (D == 1)
-      all.push_back({term.of_displacement, term.of_stress, own.discrete, own.stress, own.pair});
+      all.push_back({pair, own.pair});
     else
-      all.push_back(
-          {term.of_displacement, term.of_stress, own.discrete, own.stress, own.pair.v, *own.pair.tractions});
+      all.push_back({pair, *own.pair.tractions});
   }
   FieldSums fields(loads, std::move(all));
   LawField<D> law(loads.problem.material);
@@ -59,6 +59,7 @@ QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnM
     : base_(base),
       laws_(laws),
       progress_(progress),
+      everywhere_(base.discrete.triangles(), 0),
       own_(sums(base.discrete, {{1, 1, base}})),
       contact_(contact_work(base)) {
   const double gap = norm_with(own_.gaps, base.oscillations) + base.carried();
@@ -85,30 +86,15 @@ QuantityEnclosure::Known QuantityEnclosure::contact_work(const CertifiedSolution
 
 QuantityEnclosure::Known QuantityEnclosure::work_of_traction(const Discretization& loads,
                                                              const AdmissibleDisplacement& v) const {
-  const Mesh& mesh = loads.mesh;
-  Known sum;
-  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
-    if (!loads.traction.acts_on(edge)) continue;
-    sum.radius += loads.traction[edge].uncertain_work * v.largest_on(mesh.edge_triangles[edge][0]);
-    for (int q = 0; q < EdgeRule::size; ++q) {
-      const double s = edge_rule().points[q];
-      const Eigen::VectorXd value = v.on_edge(edge, s);
-      for (int c = 0; c < value.size(); ++c) {
-        const double own = edge_rule().weights[q] * mesh.length(edge) * loads.traction(edge, c, s) * value[c];
-        sum.value += own;
-        sum.radius += kRounding * std::abs(own);
-      }
-    }
-  }
-  return sum;
+  const TractionWork work = signorini::work_of_traction(loads, v, everywhere_);
+  return {work.value, work.slack + kRounding * work.size};
 }
 
-/// (f, v) + <t, v>.
+/// (f, v) + <t, v>, with the sums of v and these loads.
 QuantityEnclosure::Known QuantityEnclosure::work_of_loads(const Discretization& loads,
-                                                          const CertifiedSolution& of) const {
-  const Sums of_body = sums(loads, {{1, 1, of}});
-  Known sum{of_body.strain - of_body.energy, of_body.energy_slack + kRounding * std::abs(of_body.strain)};
-  sum += work_of_traction(loads, of.pair.v);
+                                                          const Sums& of_v) const {
+  Known sum{of_v.strain - of_v.energy, of_v.energy_slack + kRounding * std::abs(of_v.strain)};
+  sum += work_of_traction(loads, base_.pair.v);
   return sum;
 }
 
@@ -140,10 +126,11 @@ QuantityEnclosure::Known QuantityEnclosure::along(const Quantity& quantity, cons
   sum += start.of_displacement * work_of_traction(base_.discrete, base_.pair.v);
   sum += of_displacement.of_displacement * work_of_traction(base_.discrete, of_displacement.solution.pair.v);
   // The work on v of what the loads differ by.
-  const bool have_same_loads = quantity.density.size() == 0 && quantity.densities.empty();
+  const bool have_same_loads = quantity.has_no_loads();
   if (!have_same_loads) {
-    sum += of_stress.of_stress * work_of_loads(of_stress.solution.discrete, base_);
-    sum += -of_stress.of_stress * work_of_loads(base_.discrete, base_);
+    const Discretization& loads = of_stress.solution.discrete;
+    sum += of_stress.of_stress * work_of_loads(loads, sums(loads, {{1, 1, base_}}));
+    sum += -of_stress.of_stress * work_of_loads(base_.discrete, own_);
   }
   const Known of_other = contact_work(of_stress.solution);
   sum += of_stress.of_stress * of_other;

@@ -60,7 +60,7 @@ class QuantityEnclosure {
   Sums sums_of(const Discretization& loads, const std::vector<Term>& terms) const;
   Sums sums(const Discretization& loads, const std::vector<Term>& terms) const;
   Known work_of_traction(const Discretization& loads, const AdmissibleDisplacement& v) const;
-  Known work_of_loads(const Discretization& loads, const CertifiedSolution& of) const;
+  Known work_of_loads(const Discretization& loads, const Sums& of_v) const;
   Known contact_work(const CertifiedSolution& of_pressure) const;
   double unbalanced_between(const CertifiedSolution& other, bool have_same_loads, Eigen::VectorXd& o) const;
   Known along(const Quantity& quantity, const Term& start, const Term& of_stress, const Term& of_displacement,
@@ -69,6 +69,7 @@ class QuantityEnclosure {
   const CertifiedSolution& base_;
   const LawOnMesh& laws_;
   Progress& progress_;
+  const std::vector<int> everywhere_;  ///< all triangles have an owner
   Sums own_;
   Known contact_;
   double radius_;

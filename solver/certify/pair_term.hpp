@@ -1,0 +1,55 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "certify/displacement/admissible_displacement.hpp"
+
+namespace signorini {
+
+/// What v and σ* of an admissible pair count in a sum over several pairs on one mesh.
+struct PairTerm {
+  double of_displacement, of_stress;
+  const Discretization& discrete;  ///< which the pair belongs to
+  const Eigen::MatrixXd& stress;   ///< σ_h
+  const AdmissibleDisplacement& v;
+};
+
+template <int D, typename Term>
+Quadratic<D> displacement_on(const std::vector<Term>& terms, int t) {
+  Quadratic<D> sum = Quadratic<D>::Zero();
+  for (const PairTerm& term : terms) sum += term.of_displacement * term.v.on<D>(t);
+  return sum;
+}
+
+template <typename Term>
+bool is_lifted(const std::vector<Term>& terms, int t) {
+  return std::ranges::any_of(terms, [t](const PairTerm& term) { return term.v.is_lifted(t); });
+}
+
+/// As AdmissibleDisplacement::add_lifts().
+template <int D, typename Term>
+void add_lifts(const std::vector<Term>& terms, int t, const Point& reference, const Eigen::Matrix2d& inverse,
+               Eigen::Matrix<double, D, 1>& value, Tensor<D>& slope) {
+  for (const PairTerm& term : terms) {
+    Eigen::Matrix<double, D, 1> own = Eigen::Matrix<double, D, 1>::Zero();
+    Tensor<D> own_slope = Tensor<D>::Zero();
+    term.v.add_lifts<D>(t, reference, inverse, own, own_slope);
+    value += term.of_displacement * own;
+    slope += term.of_displacement * own_slope;
+  }
+}
+
+template <typename Term>
+AdmissibleDisplacement::LiftRest rest_of_lifts(const std::vector<Term>& terms, int t) {
+  AdmissibleDisplacement::LiftRest sum;
+  for (const PairTerm& term : terms) {
+    const AdmissibleDisplacement::LiftRest own = term.v.rest_of_lifts(t);
+    sum.value += std::abs(term.of_displacement) * own.value;
+    sum.slope += std::abs(term.of_displacement) * own.slope;
+  }
+  return sum;
+}
+
+}  // namespace signorini
