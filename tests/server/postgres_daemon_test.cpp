@@ -1,6 +1,11 @@
 // Several daemons with one database.
 
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
 #include <thread>
 
 #include "postgres_server.hpp"
@@ -159,6 +164,50 @@ TEST(PostgresFleet, WithoutTheDatabaseItWaitsAndSaysSo) {
   EXPECT_EQ(replica.post(problem, "?wait=30")->status, 200);
   // The solve that was lost begins anew.
   EXPECT_TRUE(becomes([&] { return replica.status_of(id).at("status") == "running"; }));
+}
+
+TEST(PostgresFleet, HasTheMetricsThatAlertsAndTheDashboardAskFor) {
+  Replica replica(empty_database());
+  ASSERT_EQ(replica.post(example(replica, "paper-nonconforming"), "?wait=30")->status, 200);
+  const std::string metrics = replica.get("/metrics")->body;
+  static const std::regex name("(signorini|process)_[a-z_]+");
+  for (const char* file : {"alerts.yaml", "dashboard.json"}) {
+    std::ifstream stream(std::string(MONITORING) + "/" + file);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::set<std::string> names;
+    for (std::sregex_iterator match(text.begin(), text.end(), name), end; match != end; ++match)
+      names.insert(match->str());
+    EXPECT_GT(names.size(), 3u) << file;
+    for (const std::string& each : names) {
+      const bool is_there = metrics.find("\n" + each + " ") != std::string::npos ||
+                            metrics.find("\n" + each + "{") != std::string::npos;
+      EXPECT_TRUE(is_there) << file << " asks for " << each;
+    }
+  }
+}
+
+/// As the README says it.
+TEST(PostgresFleet, IsBackedUpWhileItRunsAndBroughtBack) {
+  const std::string url = empty_database(), empty = empty_database();
+  std::string solved, running;
+  {
+    Replica replica(url, {"--workers", "1"});
+    const auto result = replica.post(example(replica, "paper-nonconforming"), "?wait=30&fields=summary");
+    solved = json::parse(result->body).at("id");
+    running = id_in(replica.post(endless(replica)));
+    ASSERT_TRUE(becomes([&] { return replica.status_of(running).at("status") == "running"; }));
+    const TemporaryDirectory directory;
+    const std::string dump = directory.path() + "/solves.dump", programs = POSTGRES_PROGRAMS;
+    ASSERT_EQ(std::system((programs + "/pg_dump --format=custom '" + url + "' > " + dump).c_str()), 0);
+    ASSERT_EQ(std::system((programs + "/pg_restore --no-owner --dbname='" + empty + "' " + dump).c_str()), 0);
+  }
+  Replica replica(empty);
+  EXPECT_EQ(replica.get("/v1/solves/" + solved + "/result")->status, 200);
+  EXPECT_TRUE(becomes(
+      [&] { return replica.process().standard_error().find(running + " started") != std::string::npos; }));
+  EXPECT_EQ(replica.status_of(running).at("status"), "running");
+  const std::string metrics = replica.get("/metrics")->body;
+  EXPECT_NE(metrics.find("signorini_solves{status=\"succeeded\"} 1"), std::string::npos) << metrics;
 }
 
 TEST(PostgresFleet, OneThatCannotReachTheDatabaseSaysWhyWithoutThePassword) {
