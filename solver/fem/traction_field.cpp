@@ -15,7 +15,7 @@ namespace {
 
 /// What an integral may be off by, relative to the largest traction: where it is smooth, and around a point
 /// where it is not, which takes a cell for every half of it.
-constexpr double kTolerance = 1e-9, kToleranceOfRough = 1e-8;
+constexpr double kToleranceOfSmooth = 1e-9, kToleranceOfRough = 1e-8;
 
 /// Of values, relative to the largest traction: less counts as none.
 constexpr double kTractionRounding = 100 * kEnclosureRounding;
@@ -121,7 +121,7 @@ class EdgeProjection {
     const double length = s.upper() - s.lower();
     const Series series = series_on(field_, edge_, s, kOrder);
     const auto r = [&](int k) { return largest(series[k]) * std::pow(length / 2, k); };
-    if (2 * r(kOrder) * std::sqrt(length) <= kTolerance * largest_) {
+    if (2 * r(kOrder) * std::sqrt(length) <= kToleranceOfSmooth * largest_) {
       add(s);
       force += 2 * length * r(kOrder);
       work += 2 * length * r(kOrder - 1);
