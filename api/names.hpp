@@ -34,9 +34,11 @@ std::string_view name_in(const Names<T>& table, const T& value) {
 
 enum class Model { membrane, elasticity };
 enum class DomainType { rectangle, polygon, mesh, gmsh };
+enum class StudyCheck { inf_sup };
 enum class MethodName { uzawa, active_set };
 
 inline const Names<Model> model_names{{"membrane", Model::membrane}, {"elasticity", Model::elasticity}};
+inline const Names<StudyCheck> study_check_names{{"inf_sup", StudyCheck::inf_sup}};
 inline const Names<DomainType> domain_names{{"rectangle", DomainType::rectangle},
                                             {"polygon", DomainType::polygon},
                                             {"mesh", DomainType::mesh},

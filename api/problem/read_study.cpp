@@ -9,16 +9,18 @@ namespace {
 
 using nlohmann::json;
 
-std::vector<Scheme> read_schemes(const Value& value) {
-  std::vector<Scheme> schemes;
-  value.for_each("an array of schemes: " + list_of(only_names(scheme_names)), [&](const Value& entry) {
-    const auto scheme = entry.one_of(scheme_names);
-    if (!scheme) return;
-    if (std::ranges::find(schemes, *scheme) != schemes.end()) entry.fault("is there twice");
-    schemes.push_back(*scheme);
+/// `what` the names are of, such as `scheme`.
+template <typename T>
+std::vector<T> read_different(const Value& value, const Names<T>& names, const std::string& what) {
+  std::vector<T> all;
+  value.for_each("an array of " + what + "s: " + list_of(only_names(names)), [&](const Value& entry) {
+    const auto named = entry.one_of(names);
+    if (!named) return;
+    if (std::ranges::find(all, *named) != all.end()) entry.fault("is there twice");
+    all.push_back(*named);
   });
-  if (value.json().is_array() && value.json().empty()) value.fault("must have at least one scheme");
-  return schemes;
+  if (value.json().is_array() && value.json().empty()) value.fault("must have at least one " + what);
+  return all;
 }
 
 std::vector<Field> read_stress(const Value& value, Model model) {
@@ -116,11 +118,13 @@ Study read_study(const Value& value, const Object& document, const Problem& prob
   const bool sound_before = !value.faults().has_any_at("");
   const auto object = value.object();
   if (!object) return study;
-  object->allow({"schemes", "divisions", "sizes", "refine", "adaptive", "exact"}, "a study");
+  object->allow({"schemes", "divisions", "sizes", "refine", "adaptive", "exact", "check"}, "a study");
   const auto schemes = object->find("schemes");
-  study.schemes = schemes ? read_schemes(*schemes) : std::vector{problem.scheme};
+  study.schemes = schemes ? read_different(*schemes, scheme_names, "scheme") : std::vector{problem.scheme};
   const Model model = components(problem.material) == 1 ? Model::membrane : Model::elasticity;
   if (const auto exact = object->find("exact")) study.exact = read_exact(*exact, model);
+  if (const auto check = object->find("check"))
+    study.checks_inf_sup = !read_different(*check, study_check_names, "check").empty();
   // What is wrong with the document's mesh would be wrong with every mesh again.
   if (has_meshes(value, *object) && sound_before)
     study.meshes = read_meshes(value, *object, document, problem);

@@ -52,7 +52,8 @@ const Names<CellOfRow>& columns_of_bound() {
        [](const StudyRow& row) { return cell_of(quotient(row.error_bound, row.errors.total)); }},
       {"stress_effectivity",
        [](const StudyRow& row) { return cell_of(quotient(row.error_bound, row.errors.energy_norm)); }},
-      {"energy", [](const StudyRow& row) { return Cell(row.energy); }}};
+      {"energy", [](const StudyRow& row) { return Cell(row.energy); }},
+      {"inf_sup", [](const StudyRow& row) { return cell_of(row.inf_sup); }}};
   return columns;
 }
 

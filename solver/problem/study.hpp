@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,11 @@ struct Study {
   std::vector<Scheme> schemes;
   std::vector<StudyMesh> meshes;
   Exact exact;
+  bool checks_inf_sup = false;  ///< whether each row has the inf-sup constant of its spaces and mesh
 };
+
+/// The stress unknowns of the largest mesh whose inf-sup constant is computed: seconds and a gigabyte.
+constexpr std::int64_t most_for_inf_sup = 300'000;
 
 /// The problem on the mesh by the scheme.
 Problem run_of(const Problem& problem, const StudyMesh& mesh, Scheme scheme);

@@ -219,6 +219,7 @@ struct StudyRow {
   std::optional<ErrorBound> error_bound;
   std::vector<EnclosedQuantity> quantities;  ///< in the order of the problem
   TrueErrors errors;
+  std::optional<double> inf_sup;  ///< β_h of fem/inf_sup.hpp, if the study asks for it
   int iterations = 0;
   double seconds = 0;  ///< of the solve; of a level since the start of the first one
 };

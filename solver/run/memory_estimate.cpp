@@ -200,6 +200,12 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
           sizes.triangles * (kMesh + discretization(problem, spaces) + element_sum(spaces, 1) + iteration));
 }
 
+double memory_of_inf_sup(const Spaces& spaces, double triangles) {
+  constexpr double mesh = 2000, entry = 62;
+  const double local = numbers_of_fields(spaces) + spaces.rotations();
+  return triangles * (mesh + entry * local * local);
+}
+
 double memory_of_history(int iterations) {
   // Its own, the observer's, and a third while one of them grows, or goes into the result.
   constexpr double histories = 3;

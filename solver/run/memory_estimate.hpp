@@ -39,6 +39,10 @@ double memory_of_neighbours(const Spaces& spaces, double triangles);
 /// triangles again as the one before.
 double memory_of_levels(const Spaces& spaces, double triangles);
 
+/// What a study's check of the inf-sup condition takes: fitted to measured ones of up to 300 000 stress
+/// unknowns, with a margin.
+double memory_of_inf_sup(const Spaces& spaces, double triangles);
+
 /// The records of so many iterations, by the solve and by whoever observes it.
 double memory_of_history(int iterations);
 

@@ -3,9 +3,11 @@
 #include <chrono>
 #include <cmath>
 
+#include "fem/inf_sup.hpp"
 #include "fem/quadrature.hpp"
 #include "fem/raviart_thomas.hpp"
 #include "mesh/domain_mesh.hpp"
+#include "progress/progress.hpp"
 #include "result/true_errors.hpp"
 #include "solve.hpp"
 
@@ -38,7 +40,7 @@ void require_finite(const TrueErrors& errors) {
           "the errors against the exact solution leave the range of double precision: look at `exact`");
 }
 
-StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solution, Observer& observer) {
+StudyRow row_of(const Problem& problem, const Study& study, const Solution& solution, Observer& observer) {
   const Summary& summary = solution.summary;
   StudyRow row;
   row.scheme = solution.scheme;
@@ -48,8 +50,12 @@ StudyRow row_of(const Problem& problem, const Exact& exact, const Solution& solu
   row.energy = summary.energy;
   row.error_bound = summary.error_bound;
   row.quantities = summary.quantities;
-  row.errors = true_errors(problem, exact, solution, observer);
+  row.errors = true_errors(problem, study.exact, solution, observer);
   require_finite(row.errors);
+  if (study.checks_inf_sup) {
+    Progress progress(observer, std::nullopt);
+    row.inf_sup = inf_sup_constant(problem, solution.mesh, &progress);
+  }
   row.iterations = summary.iterations;
   row.seconds = summary.timings.total;
   return row;
@@ -66,8 +72,8 @@ StudyRow failed_row(Scheme scheme, const StudyMesh& mesh, const std::string& why
 /// level.
 class Run : public Observer {
  public:
-  Run(Problem problem, const Exact& exact, Observer& whole)
-      : problem_(std::move(problem)), exact_(exact), whole_(whole) {}
+  Run(Problem problem, const Study& study, Observer& whole)
+      : problem_(std::move(problem)), study_(study), whole_(whole) {}
 
   void entered(Phase phase) override { whole_.entered(phase); }
   bool keep_going() override { return whole_.keep_going(); }
@@ -76,7 +82,7 @@ class Run : public Observer {
     whole_.refined(level, solution);
     if (solution.summary.outcome != Outcome::converged) return;
     const Stopwatch aside;
-    StudyRow row = row_of(problem_, exact_, solution, whole_);
+    StudyRow row = row_of(problem_, study_, solution, whole_);
     row.level = level.number;
     row.seconds = level.seconds - aside_;
     rows_.push_back(std::move(row));
@@ -91,7 +97,7 @@ class Run : public Observer {
       if (!whole_.keep_going()) throw Cancelled();
       failure = solution.summary.advice;
       if (failure.empty() && !problem_.mesh.adaptive)
-        rows_.push_back(row_of(problem_, exact_, solution, whole_));
+        rows_.push_back(row_of(problem_, study_, solution, whole_));
     } catch (const SolveError& unsolvable) {
       failure = unsolvable.what();
     } catch (const InvalidProblem& only_here) {
@@ -103,10 +109,10 @@ class Run : public Observer {
 
  private:
   const Problem problem_;
-  const Exact& exact_;
+  const Study& study_;
   Observer& whole_;
   std::vector<StudyRow> rows_;
-  double aside_ = 0;  ///< seconds that the true errors took
+  double aside_ = 0;  ///< seconds that the true errors and the check took
 };
 
 Settings after(double seconds, Settings settings) {
@@ -125,6 +131,25 @@ std::optional<Measured> measured(const StudyRow& row, const RowNumber& number) {
   return Measured{std::log(static_cast<double>(row.triangles)), std::log(*value)};
 }
 
+/// The meshes whose inf-sup constants would take too much.
+std::vector<Fault> too_large_for_inf_sup(const Problem& problem, const Study& study,
+                                         const Settings& settings) {
+  std::vector<Fault> faults;
+  const std::vector<Estimate> runs = estimate(problem, study, settings.factorization);
+  for (std::size_t i = 0; i < study.meshes.size(); ++i) {
+    std::int64_t most = 0;
+    for (std::size_t run = i; run < runs.size(); run += study.meshes.size())
+      most = std::max(most, runs[run].unknowns.stress);
+    if (most > most_for_inf_sup)
+      faults.push_back(
+          {study.meshes[i].name, "makes " + std::to_string(most) +
+                                     " stress unknowns, and the inf-sup constant is computed for " +
+                                     std::to_string(most_for_inf_sup) +
+                                     " at most: take fewer triangles, or leave study.check out"});
+  }
+  return faults;
+}
+
 }  // namespace
 
 std::vector<StudyRow> run_study(const Problem& problem, const Study& study, const Settings& settings,
@@ -141,7 +166,7 @@ std::vector<StudyRow> run_study(const Problem& problem, const Study& study, cons
                                   "the time limit for the whole study was reached before: raise "
                                   "solver.time_limit"));
       else
-        Run(run_of(problem, mesh, scheme), study.exact, observer).add_to(rows, mesh, now);
+        Run(run_of(problem, mesh, scheme), study, observer).add_to(rows, mesh, now);
       observer.studied(++done, count);
     }
   return rows;
@@ -163,6 +188,8 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
     if (mesh.request.adaptive && std::holds_alternative<PaperUzawa>(settings.method))
       faults.push_back({mesh.name, paper_form_needs_one_mesh});
   }
+  if (!faults.empty()) return faults;
+  if (study.checks_inf_sup) faults = too_large_for_inf_sup(problem, study, settings);
   if (!faults.empty()) return faults;
   const std::optional<Mesh> made = make_coarse_mesh(problem.domain);
   if (!made) return faults;

@@ -78,6 +78,8 @@ TEST(ReadStudy, TakesWhatIsKnownOfTheExactSolution) {
   EXPECT_EQ((*membranes.displacement)(0, {2, 3}), 6);
   EXPECT_EQ(membranes.stress.at(1)({2, 3}), 2);
   EXPECT_EQ(membranes.energy, -2);
+  EXPECT_FALSE(read(membrane({{"sizes", {0.3}}})).checks_inf_sup);
+  EXPECT_TRUE(read(membrane({{"sizes", {0.3}}, {"check", {"inf_sup"}}})).checks_inf_sup);
   const Exact blocks =
       read(block({{"sizes", {0.3}}, {"exact", {{"displacement", {"x", "y"}}, {"stress", {1, "x", 3}}}}}))
           .exact;
@@ -105,6 +107,11 @@ TEST(ReadStudy, RefusesEveryFaultWithItsPlace) {
   EXPECT_THAT(pointers({{"sizes", {0.3}}, {"schemes", {"conforming", "other", "conforming"}}, {"exakt", 1}}),
               ElementsAre("/study/exakt", "/study/schemes/1", "/study/schemes/2"));
   EXPECT_THAT(pointers({{"sizes", {0.3}}, {"schemes", json::array()}}), ElementsAre("/study/schemes"));
+  EXPECT_THAT(pointers({{"sizes", {0.3}}, {"check", json::array()}}), ElementsAre("/study/check"));
+  EXPECT_THAT(pointers({{"sizes", {0.3}}, {"check", {"inf_sup", "rank", "inf_sup"}}}),
+              ElementsAre("/study/check/1", "/study/check/2"));
+  EXPECT_THAT(pointers({{"divisions", {4, 1000}}, {"check", {"inf_sup"}}}),
+              ElementsAre("/study/divisions/1"));
   EXPECT_THAT(
       pointers({{"sizes", {0.3}},
                 {"exact", {{"displacement", {1, 2}}, {"stress", {"x", "z"}}, {"energy", "?"}, {"u", 1}}}}),
@@ -175,6 +182,8 @@ TEST(WriteStudy, HasARowAMeshAndSchemeAndTheFittedRates) {
                "energy_norm_error": 2.0, "relative": 0.0, "guaranteed": false, "constitutive": 0.0, "contact": 0.0,
                "oscillation": 0.0, "equilibration": 0.0, "asymmetry": 0.0, "stress_effectivity": 2.0, "energy": -2.0, "iterations": 7,
                "seconds": 0.25})"));
+  solution.study[1].inf_sup = 0.25;
+  EXPECT_EQ(write("study").at("study")["rows"][1]["inf_sup"], 0.25);
   EXPECT_NEAR(study["rows"][1]["bound_rate"].get<double>(), 2, 1e-14);
   EXPECT_FALSE(study["rows"][2].contains("bound_rate"));
   EXPECT_EQ(study["rows"][3],

@@ -355,6 +355,25 @@ TEST_P(Memory, OfAStudyIsThatOfItsLargestRun) {
   expect(narrow, {MeshRequest(LargestEdge{100}), MeshRequest(LargestEdge{0.6}), MeshRequest(LargestEdge{2})});
 }
 
+TEST_P(Memory, OfAStudyThatChecksTheInfSupCondition) {
+  const int n = long_tests() ? 120 : 32;
+  for (const Problem& problem :
+       {elastic(GetParam(), 8, 8), membrane(GetParam(), 8, 8), in_polygon(elastic(GetParam(), 8, 8), 0.3)}) {
+    const bool is_polygon = std::holds_alternative<Polygon>(problem.domain);
+    Study study{{GetParam()}, {{"", MeshRequest(Divisions{n, n}, Pattern::crossed)}}, {}, true};
+    if (is_polygon) study.meshes = {{"", MeshRequest(LargestEdge{1. / n})}};
+    Observer indifferent;
+    const MemoryMeter meter;
+    for (const StudyRow& row : run_study(problem, study, {ActiveSet{}, {}}, indifferent))
+      EXPECT_EQ(row.error, "");
+    const double predicted = for_solve(estimate(problem, study)[0], {ActiveSet{}, {}}).memory_bytes;
+    const auto peak = static_cast<double>(meter.peak());
+    EXPECT_LE(peak, predicted);
+    // The size of a polygon's mesh is not known exactly.
+    EXPECT_GE(peak + tables, predicted / (is_polygon ? 4 : 2));
+  }
+}
+
 TEST_P(Memory, OfThePapersIteration) {
   PaperUzawa few;
   few.rho = 1e-3;

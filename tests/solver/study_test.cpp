@@ -264,6 +264,36 @@ TEST(Study, IsEstimatedUntilThereAreEnoughUnknowns) {
   EXPECT_EQ(estimate(problem, study, Factorization::cholmod, first_two - 1).size(), 2u);
 }
 
+TEST(Study, HasTheInfSupConstantOfEachMeshIfItIsAskedFor) {
+  Study study{{Scheme::nonconforming}, squares({{2, 1}, {8, 4}}), {}};
+  Problem problem = problems::block(Scheme::conforming, Pattern::right, 3, 0.3);
+  problem.body = VectorField(0, -1);
+  problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{}}};
+  EXPECT_FALSE(run(problem, study)[0].inf_sup);
+  study.checks_inf_sup = true;
+  // The coarser mesh is mended before it is solved on: see InfSup.OfAStripHeldByOneEdgeIsZeroUntilItIsMended.
+  for (const StudyRow& row : run(problem, study)) {
+    ASSERT_EQ(row.error, "");
+    EXPECT_GT(row.inf_sup.value(), 0.1);
+  }
+  study.meshes = {{"/study/adaptive", MeshRequest(Divisions{4, 4})}};
+  study.meshes[0].request.adaptive = Adaptive{0.2, 4000};
+  const std::vector<StudyRow> levels = run(problem, study);
+  EXPECT_GT(levels.size(), 1u);
+  for (const StudyRow& row : levels) EXPECT_GT(row.inf_sup.value_or(0), 0.1) << row.error;
+}
+
+TEST(Study, RefusesInfSupConstantsThatTakeTooMuch) {
+  Study study{both, squares({{4, 4}, {200, 200}}), {}};
+  const Problem problem = problems::pressed_block(Scheme::nonconforming, Pattern::right, 0.3, 1);
+  EXPECT_TRUE(validate(problem, study, active_set).empty());
+  study.checks_inf_sup = true;
+  const std::vector<Fault> faults = validate(problem, study, active_set);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].where, "/study/divisions/1");
+  EXPECT_NE(faults[0].detail.find("801600 stress unknowns"), std::string::npos) << faults[0].detail;
+}
+
 TEST(Study, TellsWhatIsWrongWithIt) {
   Study study{both, squares({{4, 4}, {0, 4}}), {}};
   study.meshes.push_back({"/study/adaptive", MeshRequest(Divisions{4, 4})});

@@ -29,3 +29,4 @@ class Study:
     refine: Sequence[int] | None = None  #: numbers of refinements
     adaptive: Adaptive | None = None  #: a row a level
     exact: Exact | None = None
+    check: Sequence[Literal["inf_sup"]] | None = None  #: what else each row has
