@@ -69,18 +69,19 @@ TEST(Ends, WithinItsTimeWhateverRuns) {
 
 /// A job that does not hear that it is cancelled.
 TEST(Scheduler, LeavesWhatDoesNotEndToTheNextProcess) {
-  std::atomic<bool> let_go = false;
+  std::atomic<bool> begun = false, let_go = false;
   MemoryStore store({4, plenty, std::chrono::hours(1)});
   Scheduler scheduler(
       store,
       [&](const api::Request&, Observer&) -> Solution {
+        begun = true;
         while (!let_go) std::this_thread::sleep_for(1ms);
         return {};
       },
       1);
   scheduler.submit(new_job("a", problem_titled("deaf")));
-  for (int i = 0; i < 1000 && store.find("a")->status != JobStatus::running; ++i)
-    std::this_thread::sleep_for(10ms);
+  // Not only until it is called running: one that is cancelled before it begins hears that.
+  for (int i = 0; i < 1000 && !begun; ++i) std::this_thread::sleep_for(10ms);
   scheduler.cancel_running();
   EXPECT_FALSE(scheduler.wait_until_idle(100ms));
   scheduler.leave_running();
