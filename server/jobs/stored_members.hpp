@@ -166,11 +166,11 @@ void serialize(Archive& archive, TrueErrors& errors) {
   archive(displacement, stress, energy_norm, energy, total);
 }
 
-/// The quantities came later and end the list of a solution.
+/// The quantities and the inf-sup constant came later and end the list of a solution.
 template <class Archive>
 void serialize(Archive& archive, StudyRow& row) {
-  auto& [scheme, error, level, size, triangles, unknowns, energy, error_bound, quantities, errors, iterations,
-         seconds] = row;
+  auto& [scheme, error, level, size, triangles, unknowns, energy, error_bound, quantities, errors, inf_sup,
+         iterations, seconds] = row;
   archive(scheme, error, level, size, triangles, unknowns, energy, error_bound, errors, iterations, seconds);
 }
 
@@ -205,6 +205,8 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
     for (SweepEntry& entry : sweep) archive(entry.quantities);
     for (StudyRow& row : study) archive(row.quantities);
   }
+  if (version >= 8)
+    for (StudyRow& row : study) archive(row.inf_sup);
 }
 
 }  // namespace signorini
@@ -238,4 +240,4 @@ void serialize(Archive& archive, Progress& progress) {
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
 CEREAL_CLASS_VERSION(signorini::Summary, 4)
-CEREAL_CLASS_VERSION(signorini::Solution, 7)
+CEREAL_CLASS_VERSION(signorini::Solution, 8)

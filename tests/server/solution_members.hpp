@@ -71,8 +71,8 @@ auto members(T& all) {
 }
 template <Some<StudyRow> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m);
 }
 template <Some<SweepEntry> T>
 auto members(T& all) {
