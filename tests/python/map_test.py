@@ -38,7 +38,7 @@ class Many(unittest.TestCase):
 
             def tell(done: int, count: int) -> None:
                 bar(done, count)
-                if done == 250:
+                if done >= 250 and restarting.ident is None:
                     restarting.start()
 
             problems = [block(100.0 + i, divisions=(16, 8), title=f"young {100 + i}") for i in range(500)]
@@ -68,7 +68,7 @@ class Many(unittest.TestCase):
                     daemon.start()
 
                 def tell(done: int, count: int) -> None:
-                    if done == 10:
+                    if done >= 10 and not restarts:
                         restarts.append(asyncio.get_running_loop().run_in_executor(None, restart))
 
                 problems = [block(100.0 + i, divisions=(16, 8), title=f"young {100 + i}") for i in range(60)]
