@@ -47,6 +47,7 @@ void write_links(DocumentWriter& out, const Job& job) {
       .member("vtu", self + "/result.vtu")
       .member("picture", self + "/picture.svg")
       .member("contact_csv", self + "/contact.csv")
+      .member("quantities_csv", self + "/quantities.csv")
       .member("history", self + "/history")
       .member("history_csv", self + "/history.csv")
       .end_object();

@@ -78,6 +78,13 @@ Response get_contact_csv(Service& service, const Request& request) {
   });
 }
 
+Response get_quantities_csv(Service& service, const Request& request) {
+  return download(service, request, csv, "-quantities.csv",
+                  [](const Solution& solution, const PieceSink& sink) {
+                    return api::write_quantities_csv(solution.summary.quantities, sink);
+                  });
+}
+
 Response get_study_csv(Service& service, const Request& request) {
   if (find_job_with_result(service, request).result.solution->study.empty())
     throw HttpError(404, {"no-study", "The solve has no study",

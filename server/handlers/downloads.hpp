@@ -19,6 +19,7 @@ inline constexpr const char* svg_media_type = "image/svg+xml";
 Response get_picture(Service& service, const Request& request);
 Response get_history_csv(Service& service, const Request& request);
 Response get_contact_csv(Service& service, const Request& request);
+Response get_quantities_csv(Service& service, const Request& request);
 /// 404 too if the problem has no study.
 Response get_study_csv(Service& service, const Request& request);
 

@@ -74,6 +74,7 @@ Router routes(Service& service) {
       long_reply("/v1/solves/{id}/picture.svg", {svg_media_type}, get_picture),
       long_reply("/v1/solves/{id}/history.csv", {"text/csv"}, get_history_csv),
       long_reply("/v1/solves/{id}/contact.csv", {"text/csv"}, get_contact_csv),
+      long_reply("/v1/solves/{id}/quantities.csv", {"text/csv"}, get_quantities_csv),
       long_reply("/v1/solves/{id}/study.csv", {"text/csv"}, get_study_csv),
       long_reply("/v1/solves/{id}/history", document_types, get_history),
       {"GET", "/v1/solves/{id}/events", {event_stream_media_type}, with(get_events)},

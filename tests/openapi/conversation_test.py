@@ -267,6 +267,7 @@ class Conversation(unittest.TestCase):
             self.call("GET", path + "/result.vtu", 200)
             self.call("GET", path + "/contact.csv", 200)
             self.call("GET", path + "/history.csv", 200)
+            self.call("GET", path + "/quantities.csv", 200)
             self.call("GET", path + "/history", 200)
             events = self.call("GET", path + "/events", 200).decode()
             self.assertEqual(events.count("event: succeeded"), 1)

@@ -13,7 +13,8 @@ class Downloads : public ServiceTest {
   }
 };
 
-const std::vector<std::string> files{"/result.vtu", "/picture.svg", "/history.csv", "/contact.csv"};
+const std::vector<std::string> files{"/result.vtu", "/picture.svg", "/history.csv", "/contact.csv",
+                                     "/quantities.csv"};
 
 TEST_F(Downloads, AreLinkedFromTheStatus) {
   const std::string path = solved("touches");
@@ -22,6 +23,7 @@ TEST_F(Downloads, AreLinkedFromTheStatus) {
   EXPECT_EQ(links.at("picture"), path + "/picture.svg");
   EXPECT_EQ(links.at("history_csv"), path + "/history.csv");
   EXPECT_EQ(links.at("contact_csv"), path + "/contact.csv");
+  EXPECT_EQ(links.at("quantities_csv"), path + "/quantities.csv");
 }
 
 TEST_F(Downloads, SayWhatTheyAreAndHowToCallThem) {
@@ -36,12 +38,15 @@ TEST_F(Downloads, SayWhatTheyAreAndHowToCallThem) {
   expect_file("/result.vtu", "application/vnd.vtk", ".vtu");
   expect_file("/history.csv", "text/csv; charset=utf-8", "-history.csv");
   expect_file("/contact.csv", "text/csv; charset=utf-8", "-contact.csv");
+  expect_file("/quantities.csv", "text/csv; charset=utf-8", "-quantities.csv");
 }
 
 TEST_F(Downloads, HoldTheResult) {
   const std::string path = solved("touches");
   EXPECT_EQ(get(path + "/contact.csv")->body,
             "part,x,y,clearance,pressure,gap,open\r\nfloor,0.5,0,0,2.5,0.25,false\r\n");
+  EXPECT_EQ(get(path + "/quantities.csv")->body,
+            "name,value,estimate,lower,upper,guaranteed\r\ngrip,2.5,2.5,2,3,true\r\n");
   const std::string history = get(path + "/history.csv")->body;
   EXPECT_TRUE(history.starts_with("iteration,clearance_change,")) << history;
   EXPECT_NE(history.find("\r\n3,0,"), std::string::npos);

@@ -71,8 +71,8 @@ class Owners : public testing::TestWithParam<bool> {
 TEST_P(Owners, SeeAndDeleteTheirOwnOnly) {
   const std::string id = json::parse(post(anne, "touches", "?wait=10")->body).at("id");
   const std::string path = "/v1/solves/" + id;
-  for (const char* suffix :
-       {"", "/result", "/result.vtu", "/history", "/history.csv", "/contact.csv", "/events"}) {
+  for (const char* suffix : {"", "/result", "/result.vtu", "/history", "/history.csv", "/contact.csv",
+                             "/quantities.csv", "/events"}) {
     EXPECT_EQ(get(anne, path + suffix)->status, 200) << suffix;
     EXPECT_EQ(get(chief, path + suffix)->status, 200) << suffix;
     for (const std::string& other : {bert, viewer, bare}) expect_problem(get(other, path + suffix), 404);

@@ -36,6 +36,7 @@ Solution with_contact(int components) {
   solution.stress_at_centroids = Eigen::VectorXd::Constant(components + 1, 1);
   if (components == 2) solution.out_of_plane_stress = Eigen::VectorXd::Constant(1, 0);
   solution.contact = {{"floor", {{0.5, 0}}, {0}, {2.5}, {0.25}, {1}, {false}}};
+  solution.summary.quantities = {{"grip", 2.5, 2.5, 2, 3, true, {}, {}}};
   return solution;
 }
 
