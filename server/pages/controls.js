@@ -1,6 +1,6 @@
 // The controls of the picture, which set the view.
 
-import { aria, element, save, short } from "/pages/element.js";
+import { button, element, save, short } from "/pages/element.js";
 import { mostTriangles, svgOf } from "/pages/vector.js";
 
 /// `figures`: one, or two that are linked; `steps`: null, or the levels to step through.
@@ -10,16 +10,15 @@ export function controlsOf(figures, view, names, steps) {
   field.addEventListener("change", () => view.set({ field: field.value, fixed: false, low: null, high: null }));
 
   const toggle = (name, text, possible = true) => {
-    const button = element("button", { type: "button", hidden: !possible }, text);
-    button.addEventListener("click", () => view.set({ [name]: !state(name) }));
-    return { name, button };
+    const own = button(text, () => view.set({ [name]: !state(name) }));
+    own.hidden = !possible;
+    return { name, own };
   };
   const state = (name) => (name === "surface" ? figure.surface : view[name]);
   const toggles = [toggle("surface", "Surface", !figure.body), toggle("mesh", "Mesh"), toggle("nodes", "Unknowns"), toggle("crosses", "Principal directions", figure.body),
     toggle("smooth", "Smoothed"), toggle("difference", "Difference", figures.length > 1 && agree(figures))];
 
-  const slider = element("input", { type: "range", min: 0, max: 1, step: "any" }), exact = element("input", { type: "number", min: 0, step: "any", className: "short" });
-  aria(slider, { "aria-label": figure.body ? "Deformation, slider" : "Height, slider" });
+  const slider = element("input", { type: "range", min: 0, max: 1, step: "any", ariaLabel: figure.body ? "Deformation, slider" : "Height, slider" }), exact = element("input", { type: "number", min: 0, step: "any", className: "short" });
   slider.addEventListener("input", () => view.set({ lift: Number((4 * figure.usualLift * slider.valueAsNumber ** 2).toPrecision(3)) }));
   exact.addEventListener("change", () => view.set({ lift: exact.value === "" ? null : Math.max(0, exact.valueAsNumber) }));
   const lift = element("label", {}, figure.body ? "Deformed ×" : "Height ×", exact, slider);
@@ -28,7 +27,6 @@ export function controlsOf(figures, view, names, steps) {
   fixed.addEventListener("change", () => view.set(fixed.checked ? { fixed: true, low: figure.scale.low, high: figure.scale.high } : { fixed: false, low: null, high: null }));
   for (const [name, input] of [["low", low], ["high", high]]) input.addEventListener("change", () => { if (input.value !== "") view.set({ fixed: true, low: view.low ?? figure.scale.low, high: view.high ?? figure.scale.high, [name]: input.valueAsNumber }); });
 
-  const button = (text, does) => { const made = element("button", { type: "button" }, text); made.addEventListener("click", does); return made; };
   const each = (use) => figures.forEach((own, i) => use(own, `${names[i]}-${own.field.key}`));
   const svg = button("SVG", () => each((own, name) => save(`${name}.svg`, new Blob([svgOf(own)], { type: "image/svg+xml" }))));
   svg.disabled = figures.some((own) => own.count > mostTriangles);
@@ -45,7 +43,7 @@ export function controlsOf(figures, view, names, steps) {
 
   const show = () => {
     field.value = figure.field.key;
-    for (const { name, button: own } of toggles) own.setAttribute("aria-pressed", String(Boolean(state(name))));
+    for (const { name, own } of toggles) own.ariaPressed = Boolean(state(name));
     if (document.activeElement !== exact) exact.value = figure.lift;
     if (document.activeElement !== slider) slider.value = Math.min(1, Math.sqrt(figure.lift / (4 * figure.usualLift)));
     if (steps) told.textContent = `${(level.value = steps.shown())} of ${steps.count}`;
@@ -55,10 +53,10 @@ export function controlsOf(figures, view, names, steps) {
   };
   figure.onDrawn = show;
   show();
-  return aria(element("div", { className: "controls" },
-    element("div", { className: "row" }, element("label", {}, "Field", field), steps && element("label", {}, "Level", level, told), toggles.map(({ button: own }) => own)),
+  return element("div", { className: "controls", role: "group", ariaLabel: "What the picture shows" },
+    element("div", { className: "row" }, element("label", {}, "Field", field), steps && element("label", {}, "Level", level, told), toggles.map(({ own }) => own)),
     element("div", { className: "row" }, lift, element("label", {}, "Scale", low, "to", high), element("label", {}, fixed, "Fixed"),
-      element("span", { className: "row last" }, button("Whole view", () => view.reset()), button("PNG", () => each(async (own, name) => save(`${name}.png`, await own.png()))), svg, link))), { role: "group", "aria-label": "What the picture shows" });
+      element("span", { className: "row last" }, button("Whole view", () => view.reset()), button("PNG", () => each(async (own, name) => save(`${name}.png`, await own.png()))), svg, link)));
 }
 
 /// Whether the meshes of both are the same.

@@ -1,6 +1,6 @@
 // Shows /openapi.json: every call, to read and to try, and every schema.
 
-import { aria, element } from "/pages/element.js";
+import { element } from "/pages/element.js";
 import { getJson, withToken } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
@@ -179,7 +179,7 @@ function callsOf(api, tag) {
 }
 
 function show(main, api) {
-  const contents = aria(element("nav", { className: "contents" }), { "aria-label": "Contents" });
+  const contents = element("nav", { className: "contents", ariaLabel: "Contents" });
   const text = element("div", { className: "document" }, element("h1", {}, api.info.title),
     paragraphs(api.info.summary), paragraphs(api.info.description),
     element("p", {}, element("a", { href: "/openapi.json" }, `OpenAPI ${api.openapi}`)));

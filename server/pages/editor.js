@@ -1,7 +1,7 @@
 // A problem as text: checked by the service as one types, with its faults at their places, and with what the schema
 // lets stand at the cursor.
 
-import { aria, bytes, counted, element, seconds } from "/pages/element.js";
+import { button, bytes, counted, element, seconds } from "/pages/element.js";
 import { placesOf } from "/pages/json_places.js";
 import { beginning, Schema } from "/pages/schema.js";
 import { getJson, postJson, Refusal } from "/pages/service.js";
@@ -10,14 +10,14 @@ const pause = 350; // ms without a key before the service is asked
 
 /// `whole`: the element; `fill(text)`.
 export function editor({ text }) {
-  const area = aria(element("textarea", { spellcheck: false, value: text, autocapitalize: "off" }),
-    { "aria-label": "Problem, as JSON", "aria-autocomplete": "list", "aria-controls": "offers", "aria-haspopup": "listbox" });
-  const marks = aria(element("pre", {}), { "aria-hidden": "true" });
-  const offers = aria(element("ul", { className: "offers", id: "offers", role: "listbox", hidden: true }), { "aria-label": "What may stand here" });
+  const area = element("textarea", { spellcheck: false, value: text, autocapitalize: "off", ariaLabel: "Problem, as JSON", ariaAutoComplete: "list", ariaHasPopup: "listbox" });
+  area.setAttribute("aria-controls", "offers");
+  const marks = element("pre", { ariaHidden: "true" });
+  const offers = element("ul", { className: "offers", id: "offers", role: "listbox", hidden: true, ariaLabel: "What may stand here" });
   const said = element("p", { className: "quiet", role: "status" }, "\u00a0");
   const faults = element("ul", { className: "faults" });
-  const button = element("button", { type: "button", className: "main" }, "Solve");
-  const whole = element("div", { className: "editor" }, element("div", { className: "text" }, marks, area, offers), said, faults, element("div", { className: "row" }, button));
+  const solve = button("Solve", pose, { className: "main" });
+  const whole = element("div", { className: "editor" }, element("div", { className: "text" }, marks, area, offers), said, faults, element("div", { className: "row" }, solve));
   let schema = null, timer = 0, asked = null;
   getJson("/openapi.json").then((api) => { schema = new Schema(api); }, () => {});
 
@@ -34,11 +34,10 @@ export function editor({ text }) {
       return from < end ? pieces : [pieces[0]];
     }), `${area.value.slice(at)}\n`);
     faults.replaceChildren(...placed.map(({ pointer, detail, range }) => {
-      const line = element("button", { type: "button" }, pointer ? [element("code", {}, pointer), " "] : "", detail);
-      line.addEventListener("click", () => { area.focus(); area.setSelectionRange(...range); reveal(range[0]); });
-      return element("li", {}, line);
+      const words = [pointer && element("code", {}, pointer), pointer && " ", detail];
+      return element("li", {}, button(words, () => { area.focus(); area.setSelectionRange(...range); reveal(range[0]); }));
     }));
-    area.setAttribute("aria-invalid", String(found.length > 0));
+    area.ariaInvalid = found.length > 0;
     follow();
   }
   const follow = () => { marks.scrollTop = area.scrollTop; };
@@ -67,7 +66,7 @@ export function editor({ text }) {
     asked = new AbortController();
     const own = asked;
     const { fault } = placesOf(area.value);
-    button.disabled = true;
+    solve.disabled = true;
     if (fault) {
       said.textContent = "This is no JSON yet.";
       return show([{ detail: `line ${area.value.slice(0, fault.place).split("\n").length}: ${fault.what}`, range: [Math.max(0, Math.min(fault.place, area.value.length - 1)), fault.place + 1] }]);
@@ -77,7 +76,7 @@ export function editor({ text }) {
       const { memory_bytes: memory, seconds: time } = found.estimated;
       const unknowns = Object.values(found.unknowns).reduce((a, b) => a + b);
       said.textContent = `Ready: ${counted(found.triangles, "triangle")}, ${counted(unknowns, "unknown")}, about ${bytes(memory)} and ${seconds(time)}.${(found.notes ?? []).map((note) => ` ${note}`).join("")}`;
-      button.disabled = false;
+      solve.disabled = false;
       show([]);
     } catch (error) {
       if (error.name === "AbortError") return;
@@ -104,7 +103,7 @@ export function editor({ text }) {
     if (!shown.length) return;
     chosen = 0;
     offers.replaceChildren(...shown.map(({ text: name, about }, i) => {
-      const line = aria(element("li", { role: "option", id: `offer${i}` }, element("code", {}, name), about ? element("small", {}, about) : ""), { "aria-selected": "false" });
+      const line = element("li", { role: "option", id: `offer${i}` }, element("code", {}, name), about && element("small", {}, about));
       line.addEventListener("pointerdown", (event) => { event.preventDefault(); take(i); });
       return line;
     }));
@@ -117,7 +116,7 @@ export function editor({ text }) {
 
   function choose(i) {
     chosen = (i + shown.length) % shown.length;
-    [...offers.children].forEach((line, k) => line.setAttribute("aria-selected", String(k === chosen)));
+    [...offers.children].forEach((line, k) => { line.ariaSelected = k === chosen; });
     offers.children[chosen].scrollIntoView({ block: "nearest" });
     area.setAttribute("aria-activedescendant", `offer${chosen}`);
   }
@@ -163,22 +162,22 @@ export function editor({ text }) {
   area.addEventListener("blur", close);
   area.addEventListener("keydown", (event) => {
     if (event.key === " " && event.ctrlKey) { event.preventDefault(); return offer(); }
-    if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); return button.click(); }
+    if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); return solve.click(); }
     if (offers.hidden) return;
     const does = { ArrowDown: () => choose(chosen + 1), ArrowUp: () => choose(chosen - 1), Enter: () => take(chosen), Tab: () => take(chosen), Escape: close }[event.key];
     if (does) { event.preventDefault(); does(); }
   });
 
-  button.addEventListener("click", async () => {
-    button.disabled = true;
+  async function pose() {
+    solve.disabled = true;
     try {
       location.assign((await postJson("/v1/solves", area.value)).links.self);
     } catch (error) {
       if (error instanceof Refusal) show(error.faults.length ? error.faults : [{ detail: error.message }]);
       else said.textContent = "The service cannot be reached.";
-      button.disabled = false;
+      solve.disabled = false;
     }
-  });
+  }
 
   // What has been written before it came is kept.
   const fill = (own) => {

@@ -15,10 +15,14 @@ export function drawn(tag, attributes = {}, ...children) {
   return made;
 }
 
-export const aria = (made, attributes) => {
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+export function button(text, does, properties = {}) {
+  const made = element("button", { type: "button", ...properties }, text);
+  made.addEventListener("click", does);
   return made;
-};
+}
+
+/// The head of a column.
+export const column = (name, className = "") => element("th", { className, scope: "col" }, name);
 
 /// A number for people, with so many digits.
 export function short(number, digits = 4) {
@@ -43,10 +47,10 @@ export function bytes(count) {
 
 /// A table of numbers: names of the columns, and rows.
 export function table(caption, names, rows) {
-  const head = element("tr", {}, names.map((name, i) => aria(element("th", { className: i ? "number" : "" }, name), { scope: "col" })));
+  const head = element("tr", {}, names.map((name, i) => column(name, i ? "number" : "")));
   const cell = (value, i) => element("td", { className: i ? "number" : "" }, typeof value === "number" ? short(value, 6) : value);
-  return aria(element("div", { className: "scroll", tabIndex: 0 }, element("table", {}, element("caption", {}, caption), element("thead", {}, head),
-    element("tbody", {}, rows.map((row) => element("tr", {}, row.map(cell)))))), { role: "region", "aria-label": caption });
+  return element("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: caption }, element("table", {}, element("caption", {}, caption), element("thead", {}, head),
+    element("tbody", {}, rows.map((row) => element("tr", {}, row.map(cell))))));
 }
 
 export const state = (status) => element("span", { className: `state ${status}` }, status);

@@ -3,7 +3,7 @@
 import { coarse } from "/pages/coarse.js";
 import { colour, scaleOf } from "/pages/colours.js";
 import { Drawing } from "/pages/drawing.js";
-import { aria, element, short } from "/pages/element.js";
+import { element, short } from "/pages/element.js";
 import { extent, fieldsOf, isBody, valueAt } from "/pages/fields.js";
 import { foundationOf } from "/pages/foundation.js";
 import { nodesOf } from "/pages/nodes.js";
@@ -25,10 +25,10 @@ export class Figure {
     Object.assign(this, { view, name, body: isBody(result), scheduled: false });
     this.canvas = element("canvas");
     this.over = element("canvas");
-    this.frame = aria(element("div", { className: "frame", tabIndex: 0 }, this.canvas, this.over), { role: "application", "aria-roledescription": "picture", "aria-label": name });
+    this.frame = element("div", { className: "frame", tabIndex: 0, role: "application", ariaRoleDescription: "picture", ariaLabel: name }, this.canvas, this.over);
     this.scaleBar = element("canvas", { width: 1, height: 256, className: "bar" });
     this.ticks = element("ol", { className: "ticks" });
-    this.readout = aria(element("output", { className: "readout" }), { "aria-live": "off" });
+    this.readout = element("output", { className: "readout", ariaLive: "off" });
     this.title = element("p", { className: "field" });
     this.whole = element("figure", { className: "figure" }, element("figcaption", {}, this.title), element("div", { className: "drawn" }, this.frame, element("div", { className: "scale" }, this.scaleBar, this.ticks)), this.readout);
     this.take(result);
@@ -174,7 +174,7 @@ export class Figure {
     const lifted = this.body ? 0 : this.liftDrawn;
     this.projection = new Projection(view, this.surface, width, height, this.body ? this.size.map((half) => half + 0.5 * this.liftDrawn) : this.size, lifted);
     this.prepareShape();
-    this.scale = this.sharedScale?.() ?? this.ownScale();
+    this.scale = this.scaleWith(this.beside?.() ?? []);
     this.showScale();
     this.looked = {
       turn: this.projection.turn, frame: this.projection.frame, lift: this.surface || this.body ? this.liftDrawn : 0,
@@ -200,10 +200,10 @@ export class Figure {
     return moved;
   }
 
-  /// The scale of what is shown, or the range that was fixed.
-  ownScale() {
-    const { fixed, low, high } = this.view;
-    return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(this.least, this.most);
+  /// The scale of what the figures show, or the range that was fixed.
+  scaleWith(others) {
+    const { fixed, low, high } = this.view, all = [this, ...others];
+    return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(Math.min(...all.map(({ least }) => least)), Math.max(...all.map(({ most }) => most)));
   }
 
   showScale() {
@@ -222,10 +222,8 @@ export class Figure {
 
   /// The place of a corner in the picture.
   corner(i) {
-    const { mesh: { points, triangles }, displacement: { at_points: moved } } = this.result, p = triangles[i];
-    if (this.surface) return this.pixelOf(points[2 * p], points[2 * p + 1], (this.heights(i) - this.base) / this.largest);
-    const lift = this.body ? this.lift : 0;
-    return this.pixelOf(points[2 * p] + lift * (this.body ? moved[2 * p] : 0), points[2 * p + 1] + lift * (this.body ? moved[2 * p + 1] : 0));
+    const { points, triangles } = this.result.mesh, p = triangles[i];
+    return this.surface ? this.pixelOf(points[2 * p], points[2 * p + 1], (this.heights(i) - this.base) / this.largest) : this.pixelOfPoint(p);
   }
   /// How far behind the screen it is.
   depthOf(i) {

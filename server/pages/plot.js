@@ -1,6 +1,6 @@
 // Curves in a frame, as SVG; what is at the pointer is told below, and all of it stands in a table beside.
 
-import { aria, drawn, element, short } from "/pages/element.js";
+import { drawn, element, short } from "/pages/element.js";
 
 const wide = 640, left = 74, right = 14, top = 12, bottom = 44;
 
@@ -68,4 +68,4 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
   return element("div", { className: "plotted" }, legend(curves), svg, said);
 }
 
-const legend = (curves) => aria(element("ul", { className: "legend" }, curves.map(({ name, broken, curve }, i) => element("li", { className: `curve${(curve ?? i) % 6}${broken ? " broken" : ""}` }, name))), { "aria-label": "Curves" });
+const legend = (curves) => element("ul", { className: "legend", ariaLabel: "Curves" }, curves.map(({ name, broken, curve }, i) => element("li", { className: `curve${(curve ?? i) % 6}${broken ? " broken" : ""}` }, name)));

@@ -1,6 +1,6 @@
 // What stands below the picture of a solve, a section each.
 
-import { boundInWords, counted, element, percent, seconds, short, table } from "/pages/element.js";
+import { boundInWords, button, counted, element, percent, seconds, short, table } from "/pages/element.js";
 import { clearanceNodes } from "/pages/nodes.js";
 import { plot } from "/pages/plot.js";
 
@@ -141,8 +141,7 @@ export function sweepSection(result, view, solve) {
   const show = () => {
     const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
     choice.value = own + 1;
-    const button = element("button", { type: "button" }, "Solve it alone");
-    button.addEventListener("click", () => { button.disabled = true; solve(alone(problem, own)); });
+    const again = button("Solve it alone", () => { again.disabled = true; solve(alone(problem, own)); });
     const x = { name: "entry", values: sweep.map((_, i) => i + 1), whole: true }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
     body.replaceChildren(element("div", { className: "beside wide" },
       plot({ label: "Contact force by entry", x, y: { name: "force", zero: true }, curves: [{ name: "contact force", values: of(({ contact }) => contact.force), dots: true }], ...picked }),
@@ -150,7 +149,7 @@ export function sweepSection(result, view, solve) {
       plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),
       element("h3", {}, name(entry, own)),
       element("div", {}, entry.summary?.error_bound && verdictOf(entry.summary.error_bound)),
-      element("p", {}, button, element("span", { className: "quiet small" }, " for its fields and its bound")),
+      element("p", {}, again, element("span", { className: "quiet small" }, " for its fields and its bound")),
       entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact, result).flat() : []));
   };
   let shown = view.entry;

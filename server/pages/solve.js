@@ -2,10 +2,9 @@
 
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
-import { bytes, counted, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
+import { button, bytes, counted, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
 import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
-import { scaleOf } from "/pages/colours.js";
 import { History } from "/pages/history.js";
 import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
 import { ask, follow, getBytes, getJson, isAway, persist, postJson } from "/pages/service.js";
@@ -25,9 +24,8 @@ const failed = (error) => picture.replaceChildren(element("p", { className: "not
 function showHead(solve) {
   document.title = `${solve.title || "A solve"} · Signorini`;
   const { summary, error, progress, links } = solve;
-  const button = element("button", { type: "button" }, isOpen(solve) ? "Cancel" : "Delete");
-  button.addEventListener("click", async () => {
-    button.disabled = true;
+  const dismiss = button(isOpen(solve) ? "Cancel" : "Delete", async () => {
+    dismiss.disabled = true;
     try {
       await ask(links.self, { method: "DELETE" });
       if (!isOpen(solve)) location.assign("/v1/solves");
@@ -41,7 +39,7 @@ function showHead(solve) {
   head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
     element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · ")), solve.tags.length ? element("span", { className: "tags" }, tagLinks(solve.tags)) : ""),
     error ? element("p", { className: "notice bad" }, element("strong", {}, `${error.title}. `), error.detail ?? "", (error.errors ?? []).map((each) => element("span", { className: "line" }, element("code", {}, each.pointer ?? ""), ` ${each.detail}`))) : "",
-    element("div", { className: "row" }, button, files));
+    element("div", { className: "row" }, dismiss, files));
 }
 
 /// A link that shows the token if there is one.
@@ -115,17 +113,13 @@ function showPictures(results, solves, steps) {
 
 /// Two figures have one scale, unless one shows their difference.
 function link(figures) {
-  const comparable = agree(figures);
-  const common = () => {
-    const { fixed, low, high } = view;
-    return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(Math.min(...figures.map(({ least }) => least)), Math.max(...figures.map(({ most }) => most)));
-  };
-  view.onChange(() => { figures[1].other = comparable && view.difference ? figures[0] : null; });
-  figures[1].other = comparable && view.difference ? figures[0] : null;
-  for (const figure of figures) figure.sharedScale = () => {
-    if (view.difference && comparable) return figure.ownScale();
+  const comparable = agree(figures), differ = () => { figures[1].other = comparable && view.difference ? figures[0] : null; };
+  view.onChange(differ);
+  differ();
+  for (const figure of figures) figure.beside = () => {
+    if (figures[1].other) return [];
     figures.forEach((each) => each.prepare());
-    return common();
+    return figures;
   };
 }
 

@@ -1,6 +1,6 @@
 // The solves: what waits, runs and has ended, as it happens.
 
-import { aria, boundInWords, counted, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
+import { boundInWords, button, column, counted, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
 import { ask, getJson, isAway, Unreached } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
@@ -15,19 +15,21 @@ const status = element("select", {}, ["", "queued", "running", "succeeded", "fai
 status.value = query.get("status") ?? "";
 const title = element("input", { type: "search", value: query.get("title") ?? "", placeholder: "part of it" });
 const tag = element("input", { type: "search", value: query.get("tag") ?? "", placeholder: "the whole of it" });
-const cancel = element("button", { type: "button" }, "Cancel");
-const remove = element("button", { type: "button" }, "Delete");
-const all = aria(element("input", { type: "checkbox" }), { "aria-label": "Choose all" });
+const cancel = button("Cancel", () => dismiss(chosen().filter(({ solve }) => isOpen(solve))));
+const remove = button("Delete", async () => {
+  const own = chosen().filter(({ solve }) => !isOpen(solve));
+  if (await confirmed(own.length === 1 ? `Delete “${own[0].solve.title || "without a title"}” and its result?` : `Delete ${own.length} solves and their results?`)) dismiss(own);
+});
+const all = element("input", { type: "checkbox", ariaLabel: "Choose all" });
 const compare = element("a", { className: "button", hidden: true }, "Side by side");
-const more = element("button", { type: "button", hidden: true }, "Show more");
+const more = button("Show more", () => { count = Math.min(1000, 4 * count); look(); }, { hidden: true });
 const said = element("p", { className: "quiet", role: "status" }, "Loading …");
-const body = element("tbody");
-const column = (name, className = "") => aria(element("th", { className }, name), { scope: "col" });
+const body = element("tbody"), names = ["Title", "State", "Progress", "Error bound", "Posted"];
 main.append(element("h1", {}, "Solves"),
   element("div", { className: "row" }, element("label", {}, "Status ", status), element("label", {}, "Title ", title), element("label", {}, "Tag ", tag),
     element("span", { className: "row last" }, cancel, remove, compare)), said,
   element("div", { className: "card flush" }, element("table", { className: "solves" }, element("thead", {}, element("tr", {},
-    aria(element("th", {}, all), { scope: "col" }), column("Title"), column("State"), column("Progress"), column("Error bound"), column("Posted"))), body)),
+    [all, ...names].map((name) => column(name)))), body)),
   element("p", {}, more));
 
 function progressOf({ status: own, progress, summary, error }) {
@@ -52,7 +54,7 @@ function show(solve) {
   if (!own) {
     const box = element("input", { type: "checkbox" });
     const link = element("a", { href: solve.links.self });
-    const cells = ["Title", "State", "Progress", "Error bound", "Posted"].map((name) => { const cell = element("td"); cell.dataset.name = name; return cell; });
+    const cells = names.map((name) => { const cell = element("td"); cell.dataset.name = name; return cell; });
     const tags = element("span", { className: "tags" });
     cells[0].append(link, tags);
     own = { row: element("tr", {}, element("td", {}, box), cells), box, link, tags, cells };
@@ -63,7 +65,7 @@ function show(solve) {
   const name = solve.title || "without a title";
   own.link.textContent = name;
   if (own.tags.children.length !== solve.tags.length) own.tags.replaceChildren(...tagLinks(solve.tags));
-  aria(own.box, { "aria-label": `Choose ${name}` });
+  own.box.ariaLabel = `Choose ${name}`;
   own.cells[1].replaceChildren(state(solve.status));
   own.cells[2].textContent = progressOf(solve);
   own.cells[3].textContent = boundOf(solve);
@@ -125,16 +127,10 @@ function confirmed(question) {
   });
 }
 
-cancel.addEventListener("click", () => dismiss(chosen().filter(({ solve }) => isOpen(solve))));
-remove.addEventListener("click", async () => {
-  const own = chosen().filter(({ solve }) => !isOpen(solve));
-  if (await confirmed(own.length === 1 ? `Delete “${own[0].solve.title || "without a title"}” and its result?` : `Delete ${own.length} solves and their results?`)) dismiss(own);
-});
 all.addEventListener("change", () => {
   for (const { box, row } of rows.values()) box.checked = all.checked && row.isConnected;
   choose();
 });
-more.addEventListener("click", () => { count = Math.min(1000, 4 * count); look(); });
 for (const control of [status, title, tag]) control.addEventListener("input", () => {
   const wanted = new URLSearchParams(filters());
   history.replaceState(null, "", wanted.size ? `?${wanted}` : location.pathname);

@@ -1,32 +1,31 @@
 // The start: what this is, the examples as pictures, and a place for an own problem.
 
-import { element } from "/pages/element.js";
+import { button, element } from "/pages/element.js";
 import { editor } from "/pages/editor.js";
 import { ask, getJson, postJson } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
 const main = shell();
 
-async function solveExample(name, button, notice) {
-  button.disabled = true;
+async function solveExample(name, own, notice) {
+  own.disabled = true;
   try {
     const problem = await getJson(`/v1/examples/${name}`);
     location.assign((await postJson("/v1/solves", JSON.stringify(problem))).links.self);
   } catch (error) {
     notice.textContent = error.message;
-    button.disabled = false;
+    own.disabled = false;
   }
 }
 
 function card({ name, title, links }) {
   const notice = element("p", { className: "fault small", role: "status" });
-  const button = element("button", { type: "button", ariaLabel: `Solve ${name}` }, "Solve");
-  button.addEventListener("click", () => solveExample(name, button, notice));
+  const solve = button("Solve", () => solveExample(name, solve, notice), { ariaLabel: `Solve ${name}` });
   return element("li", { className: "card example" },
     element("a", { href: links.self, className: "picture", tabIndex: -1, ariaHidden: "true" },
       element("img", { src: `${links.self}/picture.svg`, alt: "", loading: "lazy", width: 730, height: 374 })),
     element("h3", {}, element("a", { href: links.self }, title)),
-    element("div", { className: "row" }, button, element("span", { className: "quiet code" }, name)), notice);
+    element("div", { className: "row" }, solve, element("span", { className: "quiet code" }, name)), notice);
 }
 
 const gallery = element("ul", { className: "gallery" });
