@@ -4,7 +4,7 @@
 import { button, bytes, counted, element, seconds } from "/pages/element.js";
 import { placesOf } from "/pages/json_places.js";
 import { beginning, Schema } from "/pages/schema.js";
-import { getJson, postJson, Refusal } from "/pages/service.js";
+import { getJson, pose, postJson, Refusal } from "/pages/service.js";
 
 const pause = 350; // ms without a key before the service is asked
 
@@ -16,7 +16,7 @@ export function editor({ text }) {
   const offers = element("ul", { className: "offers", id: "offers", role: "listbox", hidden: true, ariaLabel: "What may stand here" });
   const said = element("p", { className: "quiet", role: "status" }, "\u00a0");
   const faults = element("ul", { className: "faults" });
-  const solve = button("Solve", pose, { className: "main" });
+  const solve = button("Solve", begin, { className: "main" });
   const whole = element("div", { className: "editor" }, element("div", { className: "text" }, marks, area, offers), said, faults, element("div", { className: "row" }, solve));
   let schema = null, timer = 0, asked = null;
   getJson("/openapi.json").then((api) => { schema = new Schema(api); }, () => {});
@@ -168,10 +168,10 @@ export function editor({ text }) {
     if (does) { event.preventDefault(); does(); }
   });
 
-  async function pose() {
+  async function begin() {
     solve.disabled = true;
     try {
-      location.assign((await postJson("/v1/solves", area.value)).links.self);
+      await pose(area.value);
     } catch (error) {
       if (error instanceof Refusal) show(error.faults.length ? error.faults : [{ detail: error.message }]);
       else said.textContent = "The service cannot be reached.";

@@ -45,6 +45,13 @@ export function bytes(count) {
   return `${short(count / 1024 ** power, 3)} ${["bytes", "KiB", "MiB", "GiB", "TiB"][power]}`;
 }
 
+/// How far a solve that runs is.
+export function progressInWords({ phase, iteration, residual, level, sweep, study }) {
+  const several = sweep ?? study;
+  return [phase, several && `${several.done} of ${several.count}`, level && `level ${level.number}, ${counted(level.triangles, "triangle")}`,
+    iteration > 0 && `iteration ${short(iteration)}`, residual > 0 && `residual ${short(residual, 2)}`].filter(Boolean).join(" · ");
+}
+
 /// A table of numbers: names of the columns, and rows.
 export function table(caption, names, rows) {
   const head = element("tr", {}, names.map((name, i) => column(name, i ? "number" : "")));

@@ -30,10 +30,10 @@ function axisOf(values, logarithmic, whole) {
   return { low, high, ticks: evenTicks(low, high, 5).filter((tick) => !whole || Number.isInteger(tick)), share: (value) => (value - low) / (high - low), has: Number.isFinite };
 }
 
-/// `x`: { name, values, log, whole }, `y`: { name, log, zero }, `curves`: [{ name, values, dots, broken }], `stretches`: [[from, to]],
+/// `x`: { name, values, log, whole }, `y`: { name, log, zero }, `curves`: [{ name, values, dots, broken, band: [lower, upper] }], `stretches`: [[from, to]],
 /// `marked`: an index. `whole`: values are counts. `onPick(i)` is called for the row that is clicked.
 export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 240, onPick }) {
-  const across = axisOf([...x.values], x.log, x.whole), shown = curves.flatMap(({ values }) => [...values]);
+  const across = axisOf([...x.values], x.log, x.whole), shown = curves.flatMap(({ values, band = [] }) => [...values, ...band.flat()]);
   const up = axisOf(y.zero ? [...shown, 0] : shown, y.log);
   const px = (value) => left + (wide - left - right) * across.share(value), py = (value) => high - bottom - (high - top - bottom) * up.share(value);
   const text = (place, anchor, own, more = {}) => drawn("text", { x: place[0], y: place[1], "text-anchor": anchor, ...more }, own);
@@ -42,11 +42,12 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
     up.ticks.map((value) => [drawn("line", { class: "grid", x1: left, x2: wide - right, y1: py(value), y2: py(value) }), text([left - 7, py(value) + 4], "end", short(value, 3))]),
     across.ticks.map((value) => [drawn("line", { class: "grid", x1: px(value), x2: px(value), y1: top, y2: high - bottom }), text([px(value), high - bottom + 17], "middle", short(value, 3))]),
     text([(left + wide - right) / 2, high - 6], "middle", x.name), text([14, (top + high - bottom) / 2], "middle", y.name, { transform: `rotate(-90 14 ${(top + high - bottom) / 2})` }),
-    curves.map(({ values, dots, broken, curve }, c) => {
+    curves.map(({ values, dots, broken, curve, band }, c) => {
       const style = `curve${(curve ?? c) % 6}`;
       const places = [...values].map((value, i) => (up.has(value) && across.has(x.values[i]) ? [px(x.values[i]), py(value)] : null));
       const path = places.reduce((all, at, i) => (at ? `${all}${i && places[i - 1] ? "L" : "M"}${at[0].toFixed(1)} ${at[1].toFixed(1)}` : all), "");
-      return [drawn("path", { class: `curve ${style}${broken ? " broken" : ""}`, d: path || "M0 0" }),
+      const between = band && x.values.slice(1).map((to, i) => [[x.values[i], band[0][i]], [to, band[0][i + 1]], [to, band[1][i + 1]], [x.values[i], band[1][i]]]).filter((each) => each.every(([, value]) => up.has(value)));
+      return [between ? drawn("path", { class: `band ${style}`, d: between.map((each) => `M${each.map(([own, value]) => `${px(own)} ${py(value)}`).join("L")}z`).join("") || "M0 0" }) : "", drawn("path", { class: `curve ${style}${broken ? " broken" : ""}`, d: path || "M0 0" }),
         dots ? places.map((at, i) => (at ? drawn("circle", { class: style, cx: at[0], cy: at[1], r: i === marked ? 5.5 : 3 }) : "")) : ""];
     }),
     marked >= 0 && across.has(x.values[marked]) ? drawn("line", { class: "marked", x1: px(x.values[marked]), x2: px(x.values[marked]), y1: top, y2: high - bottom }) : "");

@@ -19,11 +19,13 @@ const parts = {
 
 const shareOf = (part) => (part > 0 && part < 5e-4 ? "less than 0.1 %" : percent(part));
 
+const reasons = (all) => all.length > 0 && element("ul", {}, all.map((reason) => element("li", {}, reason)));
+
 /// In one sentence, and why it is not proved.
 const verdictOf = ({ relative, guaranteed, unmet = [] }) => [
   guaranteed ? element("p", { className: "verdict good" }, `Proved: stress and displacement together are off by at most ${percent(relative)} of the stress, in the energy norm.`)
     : element("p", { className: "verdict open" }, `Estimated: stress and displacement together are off by about ${percent(relative)} of the stress, in the energy norm. It is not proved here.`),
-  unmet.length ? element("ul", {}, unmet.map((reason) => element("li", {}, reason))) : ""];
+  reasons(unmet)];
 
 export function boundSection({ error_bound: bound, notes = [], advice }) {
   if (!bound) return section("bound", "Error bound", element("p", {}, "Nothing finite is known of the error."), notesOf(notes, advice));
@@ -39,6 +41,21 @@ export function boundSection({ error_bound: bound, notes = [], advice }) {
 }
 
 const notesOf = (notes, advice) => [advice && element("p", { className: "notice bad" }, advice), notes.map((note) => element("p", { className: "notice" }, note))];
+
+// --- quantities
+
+/// Its value and interval, in so many digits that the ends are told apart.
+function told({ value, lower, upper }) {
+  const digits = lower < upper ? Math.ceil(Math.log10(Math.max(-lower, upper) / (upper - lower))) + 2 : 6, own = (number) => short(number, Math.min(Math.max(digits, 4), 15));
+  return [own(value), lower === undefined ? "–" : `${own(lower)} … ${own(upper)}`];
+}
+
+const quantitiesTable = (caption, quantities) => [
+  table(caption, ["name", "value", "interval", "guaranteed"], quantities.map((own) => [own.name, ...told(own), own.guaranteed ? "yes" : "no"])),
+  reasons(quantities.flatMap(({ name, unmet = [] }) => unmet.map((reason) => `${name}: ${reason}`)))];
+
+/// `link` leads to their file.
+export const quantitiesSection = (quantities, link) => section("quantities", "Quantities", quantitiesTable("What the problem asks for", quantities), element("p", {}, link));
 
 // --- the contact
 
@@ -66,11 +83,12 @@ function closedStretches(rows, open) {
 
 function contactStrips(contact, { mesh, stress }) {
   return Object.entries(contact).map(([name, { points, clearance, pressure, gap, open }]) => {
-    const extent = extents(stress, mesh, name, points), along = Float64Array.from(extent, ({ at }) => at), stretches = closedStretches(extent, open), x = { name: "arc length", values: along };
+    const extent = extents(stress, mesh, name, points), along = Float64Array.from(extent, ({ at }) => at), stretches = closedStretches(extent, open), dots = along.length < 80;
+    const strip = (label, unit, curves) => plot({ label: `${label} along ${name}`, x: { name: "arc length", values: along }, y: { name: unit, zero: true }, curves, stretches, high: 210 });
     const rows = Array.from(along, (s, i) => [s, points[2 * i], points[2 * i + 1], clearance[i], pressure[i], gap[i], open[i] ? "open" : "closed"]);
     return [element("h3", {}, name), element("p", { className: "quiet small" }, stretches.length ? `Closed on ${stretches.map(([from, to]) => `${short(from, 3)} … ${short(to, 3)}`).join(", ")} (shaded).` : "Open everywhere."),
-      element("div", { className: "beside wide" }, plot({ label: `Pressure along ${name}`, x, y: { name: "pressure", zero: true }, curves: [{ name: "pressure", values: pressure, dots: along.length < 80 }], stretches, high: 210 }),
-      plot({ label: `Clearance and gap along ${name}`, x, y: { name: "length", zero: true }, curves: [{ name: "clearance", values: clearance, dots: along.length < 80 }, { name: "gap", values: gap, broken: true, curve: 1 }], stretches, high: 210 })),
+      element("div", { className: "beside wide" }, strip("Pressure", "pressure", [{ name: "pressure", values: pressure, dots }]),
+      strip("Clearance and gap", "length", [{ name: "clearance", values: clearance, dots }, { name: "gap", values: gap, broken: true, curve: 1 }])),
       numbers(`Numbers of ${name}`, table(`Contact on ${name}`, ["arc length", "x", "y", "clearance", "pressure", "gap", "state"], rows))];
   });
 }
@@ -93,8 +111,7 @@ export function levelsSection({ levels }, view, steps) {
     body.replaceChildren(element("p", {}, `Level ${own + 1} of ${steps.count}: ${facts}, bound ${short(levels.bound[own], 4)}, that is ${percent(levels.relative[own])}, after ${seconds(levels.seconds[own])}.`),
       plot({ label: "Relative error bound by triangles", x: { name: "triangles", values: levels.triangles, log: true }, y: { name: "relative bound", log: true }, curves: [{ name: "relative bound", values: levels.relative, dots: true }], marked: own, onPick: (i) => view.set({ level: i + 1 }) }));
   };
-  let shown = view.level;
-  view.onChange(() => { if (view.level !== shown) { shown = view.level; show(); } });
+  view.onChangeOf("level", show);
   show();
   const names = ["level", "triangles", "unknowns", "bound", "relative", "iterations", "seconds"];
   return section("levels", "Levels of the mesh", body, numbers("Numbers of the levels", table("Levels", names, Array.from(levels.level, (_, i) => names.map((name) => levels[name][i])))));
@@ -132,7 +149,7 @@ function alone({ sweep, title, ...problem }, own) {
 
 /// `solve(problem)` poses one.
 export function sweepSection(result, view, solve) {
-  const { sweep, problem } = result;
+  const { sweep, problem, quantities: asked = [] } = result;
   const body = element("div");
   const name = (entry, i) => entry.title || `entry ${i + 1}`;
   const of = (read) => sweep.map((entry) => (entry.summary ? read(entry.summary) : NaN));
@@ -143,20 +160,24 @@ export function sweepSection(result, view, solve) {
     choice.value = own + 1;
     const again = button("Solve it alone", () => { again.disabled = true; solve(alone(problem, own)); });
     const x = { name: "entry", values: sweep.map((_, i) => i + 1), whole: true }, picked = { marked: own, onPick: (i) => view.set({ entry: i + 1 }), high: 200 };
+    const curve = (label, unit, read, band) => plot({ label: `${label} by entry`, x, y: { name: unit, zero: true }, curves: [{ name: label, values: of(read), dots: true, band }], ...picked });
+    const bound = entry.summary?.error_bound;
     body.replaceChildren(element("div", { className: "beside wide" },
-      plot({ label: "Contact force by entry", x, y: { name: "force", zero: true }, curves: [{ name: "contact force", values: of(({ contact }) => contact.force), dots: true }], ...picked }),
-      plot({ label: "Largest pressure by entry", x, y: { name: "pressure", zero: true }, curves: [{ name: "largest pressure", values: of(({ contact }) => contact.max_pressure), dots: true }], ...picked }),
-      plot({ label: "Closed length by entry", x, y: { name: "length", zero: true }, curves: [{ name: "closed length", values: of(({ contact }) => contact.length), dots: true }], ...picked })),
+      curve("contact force", "force", ({ contact }) => contact.force), curve("largest pressure", "pressure", ({ contact }) => contact.max_pressure), curve("closed length", "length", ({ contact }) => contact.length),
+      asked.map(({ name: label }, q) => {
+        const read = (key) => ({ quantities }) => quantities?.[q]?.[key];
+        return curve(label, "value", read("value"), [of(read("lower")), of(read("upper"))]);
+      })),
       element("h3", {}, name(entry, own)),
-      element("div", {}, entry.summary?.error_bound && verdictOf(entry.summary.error_bound)),
-      element("p", {}, again, element("span", { className: "quiet small" }, " for its fields and its bound")),
+      element("div", {}, bound && verdictOf(bound)),
+      element("div", {}, entry.summary?.quantities && quantitiesTable(`Quantities of ${name(entry, own)}`, entry.summary.quantities)),
+      element("p", {}, again, element("span", { className: "quiet small" }, bound ? " for its fields" : " for its fields and its bound")),
       entry.error ? element("p", { className: "notice bad" }, entry.error) : "", ...(entry.contact ? contactStrips(entry.contact, result).flat() : []));
   };
-  let shown = view.entry;
-  view.onChange(() => { if (view.entry !== shown) { shown = view.entry; show(); } });
+  view.onChangeOf("entry", show);
   show();
-  const rows = sweep.map((entry, i) => [name(entry, i), entry.status, boundInWords(entry.summary?.error_bound), ...["force", "max_pressure", "length"].map((key) => entry.summary?.contact[key] ?? "–"), entry.summary?.energy ?? "–", entry.summary?.iterations ?? "–"]);
-  return section("sweep", "Sweep", element("p", {}, element("label", {}, "Entry ", choice)), body, numbers("Numbers of the sweep", table("Sweep", ["entry", "status", "bound", "force", "largest pressure", "closed length", "energy", "iterations"], rows)));
+  const rows = sweep.map((entry, i) => [name(entry, i), entry.status, boundInWords(entry.summary?.error_bound), ...["force", "max_pressure", "length"].map((key) => entry.summary?.contact[key] ?? "–"), entry.summary?.energy ?? "–", entry.summary?.iterations ?? "–", ...asked.flatMap((_, q) => told(entry.summary?.quantities?.[q] ?? {}))]);
+  return section("sweep", "Sweep", element("p", {}, element("label", {}, "Entry ", choice)), body, numbers("Numbers of the sweep", table("Sweep", ["entry", "status", "bound", "force", "largest pressure", "closed length", "energy", "iterations", ...asked.flatMap(({ name: label }) => [label, `${label}, interval`])], rows)));
 }
 
 // --- figures

@@ -72,6 +72,9 @@ export async function getJson(path, options = {}) {
 export const postJson = (path, body, signal) =>
   getJson(path, { method: "POST", body, signal, headers: { "Content-Type": "application/json" } });
 
+/// Poses a problem, and goes to its solve.
+export const pose = async (text) => location.assign((await postJson("/v1/solves", text)).links.self);
+
 /// A document in CBOR as bytes; `onProgress` is told how many have come.
 export async function getBytes(path, onProgress = () => {}) {
   const reply = await ask(path, { headers: { Accept: "application/cbor" } });

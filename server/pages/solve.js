@@ -2,12 +2,12 @@
 
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
-import { button, bytes, counted, element, isOpen, save, seconds, short, state, tagLinks } from "/pages/element.js";
+import { button, bytes, counted, element, isOpen, progressInWords, save, seconds, state, tagLinks } from "/pages/element.js";
 import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
 import { History } from "/pages/history.js";
-import { boundSection, contactSection, figuresSection, levelsSection, studySection, sweepSection } from "/pages/sections.js";
-import { ask, follow, getBytes, getJson, isAway, persist, postJson } from "/pages/service.js";
+import { boundSection, contactSection, figuresSection, levelsSection, quantitiesSection, studySection, sweepSection } from "/pages/sections.js";
+import { ask, follow, getBytes, getJson, isAway, persist, pose } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
 
@@ -33,11 +33,10 @@ function showHead(solve) {
       failed(refusal);
     }
   });
-  const facts = summary ? [counted(summary.triangles, "triangle"), `${counted(summary.iterations, "iteration")}, ${summary.method.replaceAll("_", " ")}`, seconds(summary.timings.total), bytes(summary.peak_memory_bytes)]
-    : [progress.phase, progress.level && `level ${progress.level.number}`, progress.iteration > 0 && `iteration ${short(progress.iteration)}`, progress.residual > 0 && `residual ${short(progress.residual, 3)}`].filter(Boolean);
+  const facts = summary ? [counted(summary.triangles, "triangle"), `${counted(summary.iterations, "iteration")}, ${summary.method.replaceAll("_", " ")}`, seconds(summary.timings.total), bytes(summary.peak_memory_bytes)].join(" · ") : progressInWords(progress);
   const files = summary ? [["result", "JSON"], ["vtu", "VTU"], ["picture", "Plain picture"], ["contact_csv", "Contact CSV"], ["history_csv", "History CSV"]].map(([key, name]) => fileLink(links[key], name)) : [];
   head.replaceChildren(element("h1", {}, solve.title || "A solve without a title"),
-    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts.join(" · ")), solve.tags.length ? element("span", { className: "tags" }, tagLinks(solve.tags)) : ""),
+    element("p", { className: "row" }, state(solve.status), element("span", { className: "quiet" }, facts), solve.tags.length ? element("span", { className: "tags" }, tagLinks(solve.tags)) : ""),
     error ? element("p", { className: "notice bad" }, element("strong", {}, `${error.title}. `), error.detail ?? "", (error.errors ?? []).map((each) => element("span", { className: "line" }, element("code", {}, each.pointer ?? ""), ` ${each.detail}`))) : "",
     element("div", { className: "row" }, dismiss, files));
 }
@@ -55,12 +54,10 @@ function fileLink(href, name) {
 
 // --- the result
 
-const pose = (problem) => postJson("/v1/solves", JSON.stringify(problem)).then(({ links }) => location.assign(links.self), failed);
-
 /// What the picture and the sections show of a solve that has a result.
 async function resultOf(solve, onProgress) {
   const { problem } = await getJson(`${solve.links.result}?fields=problem`), body = problem.model === "elasticity";
-  const fields = ["mesh", "displacement", "stress", "error_squares", "contact", "sweep", "study", ...(body ? ["principal", "von_mises"] : [])];
+  const fields = ["mesh", "displacement", "stress", "error_squares", "contact", "quantities", "sweep", "study", ...(body ? ["principal", "von_mises"] : [])];
   return { ...decode(await getBytes(`${solve.links.result}?fields=${fields}`, onProgress)), problem };
 }
 
@@ -76,8 +73,8 @@ async function showResult(solve) {
   const { summary } = solve, steps = summary.levels && stepsOf(summary), isAlone = results.length === 1;
   const [figure] = showPictures(results, solves, isAlone ? steps : null);
   if (steps && isAlone) stepThrough(figure, result, steps, solve.links);
-  sections.replaceChildren(...[boundSection(summary), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
-    result.study && studySection(result.study), result.sweep && sweepSection(result, view, pose), figuresSection(summary)].filter(Boolean));
+  sections.replaceChildren(...[boundSection(summary), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
+    result.study && studySection(result.study), result.sweep && sweepSection(result, view, (problem) => pose(JSON.stringify(problem)).catch(failed)), figuresSection(summary)].filter(Boolean));
 }
 
 /// How many levels there are, and which is looked at: at first that of the result.

@@ -1,6 +1,6 @@
 // The solves: what waits, runs and has ended, as it happens.
 
-import { boundInWords, button, column, counted, element, isOpen, percent, short, state, tagLinks } from "/pages/element.js";
+import { boundInWords, button, column, counted, element, isOpen, percent, progressInWords, short, state, tagLinks } from "/pages/element.js";
 import { ask, getJson, isAway, Unreached } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
@@ -35,10 +35,7 @@ main.append(element("h1", {}, "Solves"),
 function progressOf({ status: own, progress, summary, error }) {
   if (error) return error.title;
   if (own === "queued") return "waits for a worker";
-  const { phase, iteration, residual, level, sweep, study } = progress;
-  const several = sweep ?? study;
-  if (own === "running") return [phase, several && `${several.done} of ${several.count}`, level && `level ${level.number}, ${counted(level.triangles, "triangle")}`,
-    iteration > 0 && `iteration ${short(iteration)}`, residual > 0 && `residual ${short(residual, 2)}`].filter(Boolean).join(" · ");
+  if (own === "running") return progressInWords(progress);
   return summary ? `${counted(summary.triangles, "triangle")}, ${counted(summary.iterations, "iteration")}` : "";
 }
 

@@ -2,7 +2,7 @@
 
 import { button, element } from "/pages/element.js";
 import { editor } from "/pages/editor.js";
-import { ask, getJson, postJson } from "/pages/service.js";
+import { ask, getJson, pose } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 
 const main = shell();
@@ -10,8 +10,7 @@ const main = shell();
 async function solveExample(name, own, notice) {
   own.disabled = true;
   try {
-    const problem = await getJson(`/v1/examples/${name}`);
-    location.assign((await postJson("/v1/solves", JSON.stringify(problem))).links.self);
+    await pose(JSON.stringify(await getJson(`/v1/examples/${name}`)));
   } catch (error) {
     notice.textContent = error.message;
     own.disabled = false;

@@ -38,6 +38,12 @@ export class View {
     this.listeners.push(listener);
   }
 
+  /// Only when the member is another one.
+  onChangeOf(name, listener) {
+    let seen = this[name];
+    this.onChange(() => { if (this[name] !== seen) { seen = this[name]; listener(); } });
+  }
+
   set(changes) {
     Object.assign(this, changes);
     clearTimeout(this.timer);

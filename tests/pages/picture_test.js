@@ -364,3 +364,25 @@ test("Below it stand the bound in words, contact, sweep, levels and study, and t
   await page.getByText(/^Fitted rates/).first().waitFor();
   wellDone();
 });
+
+test("Quantities stand in a table with their intervals, and those of a sweep as curves with bands", async () => {
+  const block = { ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" } };
+  const problem = { ...block, quantities: [{ name: "load <b>", type: "pressure_force", part: "bottom" }], sweep: [{ boundary: { bottom: { gap: 0 } } }, { title: "lower", boundary: { bottom: { gap: 0.01 } } }] };
+  const id = await service.solve(problem), all = await result(id, "quantities,sweep"), [{ lower, upper, guaranteed }] = all.quantities;
+  assert.ok(lower <= 2 && upper >= 2);
+  await open(id);
+  const cells = await page.locator("#quantities tbody td").allInnerTexts();
+  assert.equal(cells[0], "load <b>");
+  assert.equal(cells[3], guaranteed ? "yes" : "no");
+  // The ends are told to a hundredth of what lies between them.
+  cells[2].split(" … ").forEach((end, i) => assert.ok(Math.abs(shown(end) - [lower, upper][i]) <= 0.01 * (upper - lower) + 1e-15, `${cells[2]}, not ${lower} … ${upper}`));
+  const [file] = await Promise.all([page.waitForResponse("**/quantities.csv"), page.locator("#quantities").getByRole("link", { name: "Quantities CSV" }).evaluate((link) => fetch(link.href))]);
+  assert.equal(file.status(), 200);
+  assert.equal(await page.locator("#sweep .plot").count(), 4 + 2);
+  assert.equal((await page.locator("#sweep .band").getAttribute("d")).split("M").length, 2);
+  // Gaps alone are new, and yet there is a bound, for quantities need the fields.
+  await page.getByLabel("Entry", { exact: true }).last().selectOption("2");
+  await page.locator("#sweep .verdict").waitFor();
+  assert.equal((await page.locator("#sweep table", { hasText: "Quantities of lower" }).locator("tbody td").first().innerText()), "load <b>");
+  wellDone();
+});
