@@ -119,11 +119,12 @@ bool write(const std::string& problem, const std::string& title, const Ending& e
 
 int run_solve(const SolveConfig& config) {
   return run_locally([&] {
-    const Form form = form_of(config);
+    Form form = form_of(config);
     const std::string text = read_input(config.file);
     api::Request request = parse_input(text);
     request.settings.factorization = config.factorization;
     require_available(form, request);
+    form.picture.contacts = api::Picture::contacts_of(request.problem);
     std::optional<Series> series;
     if (!config.series.empty()) series.emplace(config.series);
     const auto write_result = [&](const Ending& ending, const api::Sink& sink) {

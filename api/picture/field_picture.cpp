@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "api/picture/colour_map.hpp"
+#include "api/picture/foundation.hpp"
 #include "api/picture/svg.hpp"
 #include "fem/stress_invariants.hpp"
 
@@ -219,6 +220,17 @@ void draw_edges(Svg& svg, const Mesh& mesh, const View& view, const std::vector<
   svg.end_path();
 }
 
+void draw_foundation(Svg& svg, const View& view, const std::vector<std::vector<Point>>& lines) {
+  if (lines.empty()) return;
+  svg.begin_path("foundation");
+  for (const std::vector<Point>& line : lines) {
+    std::vector<Point> places;
+    for (const Point& point : line) places.push_back(view(point));
+    svg.shape(places, false);
+  }
+  svg.end_path();
+}
+
 void draw_scale(Svg& svg, const ColourMap& colours, const std::string& name, double left) {
   constexpr double top = View::margin + View::top, high = 8, wide = 16;
   constexpr int bands = ColourMap::kBands;
@@ -233,7 +245,8 @@ void draw_scale(Svg& svg, const ColourMap& colours, const std::string& name, dou
 std::string styles(const ColourMap& colours) {
   std::string all =
       ".number{font-size:11px}.f{stroke-width:.5;stroke-linejoin:round}.mesh{fill:none;stroke:#000;"
-      "stroke-opacity:.2;stroke-width:.6}.rim{fill:none;stroke:#222;stroke-width:1.4;stroke-linecap:round}";
+      "stroke-opacity:.2;stroke-width:.6}.rim{fill:none;stroke:#222;stroke-width:1.4;stroke-linecap:round}"
+      ".foundation{fill:none;stroke:#000;stroke-width:1.6;stroke-dasharray:7 4}";
   for (int band = 0; band < ColourMap::kBands; ++band) {
     const std::string own = colours.colour(band);
     all += ".c" + std::to_string(band) + "{fill:" + own + ";stroke:" + own + "}";
@@ -248,13 +261,18 @@ void draw_field(const Solution& solution, const Picture& picture, PieceWriter& o
   const Colouring by = colouring(solution, picture.field);
   const ColourMap colours = colours_of(by, static_cast<int>(solution.mesh.triangles.size()));
   const std::vector<Point> points = moved(solution, picture.deformed);
-  const View view(points);
+  std::vector<std::vector<Point>> lines;
+  if (solution.components == 2) lines = foundation(solution, picture.contacts, picture.deformed.value_or(1));
+  std::vector<Point> seen = points;
+  for (const std::vector<Point>& line : lines) seen.insert(seen.end(), line.begin(), line.end());
+  const View view(seen);
   std::vector<Point> places;
   for (const Point& point : points) places.push_back(view(point));
   const double width = std::max(least_width, view.width());
   Svg svg(out, width + of_scale, std::max(least_height, view.height()), by.name, styles(colours));
   fill_triangles(svg, solution.mesh, by, colours, places);
   draw_edges(svg, solution.mesh, view, places);
+  draw_foundation(svg, view, lines);
   draw_scale(svg, colours, by.name, width + 6);
   svg.end();
 }

@@ -26,6 +26,13 @@ Picture::Field Picture::field_named(std::string_view name) {
                                        "; known are: " + list_of(known)}});
 }
 
+std::map<std::string, Contact> Picture::contacts_of(const Problem& problem) {
+  std::map<std::string, Contact> contacts;
+  for (const auto& [part, condition] : problem.boundary)
+    if (const auto* contact = std::get_if<Contact>(&condition)) contacts.emplace(part, *contact);
+  return contacts;
+}
+
 void Picture::require_available(int components) const {
   const auto refuse = [](const char* where, const std::string& why) { throw InvalidProblem({{where, why}}); };
   if (components == 1 && field == Field::von_mises)

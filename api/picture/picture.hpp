@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "api/document/piece_writer.hpp"
@@ -21,13 +23,17 @@ struct Picture {
 
   Field field = Field::displacement;
   /// The points are moved by so many times the displacement of an elastic body, from 0 to most_deformed;
-  /// nothing: they stay. Foundations are drawn where the gap is, so many times as far away.
+  /// nothing: they stay. Foundations are drawn so many times as far away as the gap is, else where it is.
   std::optional<double> deformed;
+  /// The contacts of the problem by their parts, for the directions in which foundations lie.
+  std::map<std::string, Contact> contacts = {};
 
   static constexpr double most_deformed = 1e15;
 
   /// `displacement` and so on; empty is `displacement`. Throws InvalidProblem at `/field`.
   static Field field_named(std::string_view name);
+
+  static std::map<std::string, Contact> contacts_of(const Problem& problem);
 
   /// Throws InvalidProblem at `/field` or `/deformed` for what solutions with so many components do not have.
   void require_available(int components) const;

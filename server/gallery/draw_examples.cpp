@@ -25,9 +25,9 @@ double deformation(const Solution& solution) {
 }
 
 /// A membrane by its displacement, a body by von Mises' stress.
-api::Picture picture_of(const Solution& solution) {
+api::Picture picture_of(const Problem& problem, const Solution& solution) {
   if (solution.components == 1) return {};
-  return {api::Picture::Field::von_mises, deformation(solution)};
+  return {api::Picture::Field::von_mises, deformation(solution), api::Picture::contacts_of(problem)};
 }
 
 void draw(const api::Example& example, const std::string& directory) {
@@ -35,7 +35,7 @@ void draw(const api::Example& example, const std::string& directory) {
   const Solution solution = solve(request.problem, request.settings);
   std::ofstream file(directory + "/" + std::string(example.name) + ".svg");
   file.exceptions(std::ios::badbit | std::ios::failbit);
-  api::write_picture(solution, picture_of(solution), [&](std::string_view piece) {
+  api::write_picture(solution, picture_of(request.problem, solution), [&](std::string_view piece) {
     file << piece;
     return true;
   });

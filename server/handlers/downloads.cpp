@@ -1,6 +1,7 @@
 #include "server/handlers/downloads.hpp"
 
 #include "api/picture/picture.hpp"
+#include "api/problem/problem_json.hpp"
 #include "api/result/csv.hpp"
 #include "api/result/vtu.hpp"
 #include "server/handlers/find_job.hpp"
@@ -61,6 +62,8 @@ Response get_picture(Service& service, const Request& request) {
   picture.deformed = number_parameter(request.query, "deformed", 0, api::Picture::most_deformed);
   const JobWithResult about = find_job_with_result(service, request);
   with_picture([&] { picture.require_available(*about.result.solution); });
+  if (about.result.solution->components == 2)
+    picture.contacts = api::Picture::contacts_of(api::parse_request(*about.result.problem).problem);
   return file_of(service, about, svg_media_type, [picture](const Solution& solution, const PieceSink& sink) {
     return api::write_picture(solution, picture, sink);
   });

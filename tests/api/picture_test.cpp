@@ -195,6 +195,60 @@ TEST(Picture, OfTheContactMarksWhereItTouchesAndKeepsNamesText) {
             std::string::npos);
 }
 
+/// The corners of the lines of the foundation.
+std::vector<std::vector<Point>> foundation_of(const std::string& svg) {
+  std::smatch path;
+  if (!std::regex_search(svg, path, std::regex("<path class=\"foundation\" d=\"([^\"]*)\""))) return {};
+  std::vector<std::vector<Point>> lines = shapes_of(path[1]);
+  lines.erase(lines.begin());  // before the first M
+  return lines;
+}
+
+/// The lower side of the rectangle, 2 long, as a contact of one edge with two nodes.
+Solution with_foundation(double left, double right) {
+  Solution solution = two_triangles(2, Eigen::MatrixXd::Ones(2, 2));
+  solution.contact = {{"other", {{0, 0}, {2, 0}}, {0, 0}, {0, 0}, {left, right}, {1, 1}, {true, true}}};
+  return solution;
+}
+
+/// 290 pixels for a length of 1, the lower side at 344.
+TEST(Picture, OfABodyHasTheFoundationWhereTheGapIs) {
+  const std::vector<std::vector<Point>> lines = foundation_of(drawn(with_foundation(0, 0.1)));
+  ASSERT_EQ(lines.size(), 1u);
+  ASSERT_EQ(lines[0].size(), 2u);
+  EXPECT_NEAR(lines[0][0].x(), 30, 0.01);
+  EXPECT_NEAR(lines[0][0].y(), 344, 0.01);
+  EXPECT_NEAR(lines[0][1].x(), 610, 0.01);
+  EXPECT_NEAR(lines[0][1].y(), 344 + 29, 0.01);
+}
+
+TEST(Picture, MovesTheFoundationAsTheBody) {
+  Picture picture;
+  picture.deformed = 3;
+  const auto lines = foundation_of(drawn(with_foundation(0, 0.1), picture));
+  EXPECT_NEAR(lines.at(0).at(1).y(), 344 + 3 * 29, 0.01);
+}
+
+/// Along (1, −1)/√2.
+TEST(Picture, LaysTheFoundationInTheDirectionOfTheContact) {
+  Picture picture;
+  picture.contacts["other"].direction = Vector(5, -5);
+  const std::vector<Point> line = foundation_of(drawn(with_foundation(0.1, 0.1), picture)).at(0);
+  const double scale = (line[1].x() - line[0].x()) / 2;
+  EXPECT_LT(scale, 290) << "the picture has the foundation in it";
+  EXPECT_NEAR(line[1].x(), 610, 0.01);
+  EXPECT_NEAR(line[0].x(), 30 + 0.1 / std::sqrt(2) * scale, 0.02);
+}
+
+TEST(Picture, LeavesOutWhatIsFarFromTheBodyAndWhatAMembraneMeets) {
+  const auto lines = foundation_of(drawn(with_foundation(0, 1e9)));
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].size(), 1u);
+  Solution membrane = two_triangles(1, Eigen::RowVector2d(1, 3));
+  membrane.contact = with_foundation(0, 0.1).contact;
+  EXPECT_TRUE(foundation_of(drawn(membrane)).empty());
+}
+
 TEST(Picture, OfTheHistoryHasACurveForEachResidualThatIsNotZero) {
   Solution solution = two_triangles(1, Eigen::RowVector2d(1, 3));
   for (int i = 1; i <= 3; ++i) {
