@@ -113,3 +113,14 @@ export async function violations(page) {
 
 /// A frame of the picture has been drawn with this field, if it is named.
 export const drawn = (page) => page.waitForFunction(() => document.querySelector(".ticks li") && !document.querySelector(".pictures [role=status]"));
+
+/// What comes soon: the check is made again until it holds, and after a minute throws what it misses.
+export async function eventually(check) {
+  for (const begun = Date.now(); ; await new Promise((resolve) => setTimeout(resolve, 100))) {
+    try {
+      return await check();
+    } catch (missing) {
+      if (Date.now() - begun > 60000) throw missing;
+    }
+  }
+}

@@ -38,6 +38,7 @@ test("They are picked by status, title and tag", async () => {
   await page.getByText("1 shown").waitFor();
   assert.equal(new URL(page.url()).search, "?status=succeeded");
   await page.getByLabel("Status").selectOption("");
+  await page.getByText("2 shown").waitFor();
   await page.getByLabel("Title").fill("RUNS");
   await page.getByText("1 shown").waitFor();
   assert.equal(await row("waits").count(), 0);
