@@ -78,6 +78,7 @@ void Svg::begin_path(std::string_view style) {
 }
 
 void Svg::shape(std::span<const Point> points, bool closed) {
+  if (points.empty()) return;
   Point last = rounded(points.front());
   out_.put('M');
   put(last);

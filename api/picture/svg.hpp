@@ -25,7 +25,7 @@ class Svg {
   void text(const Point& place, std::string_view text, std::string_view style, Anchor anchor = Anchor::start);
 
   /// Closed shapes of one style, or open ones, in one element: begin, any number of shapes, end. A point is
-  /// written as the step from the one before.
+  /// written as the step from the one before; none is no shape.
   void begin_path(std::string_view style);
   void shape(std::span<const Point> points, bool closed);
   void end_path();

@@ -271,8 +271,9 @@ class Quantities {
 }  // namespace
 
 std::vector<Quantity> read_quantities(const Value& value, Model model, const Problem& problem) {
-  Quantities quantities(model, problem);
+  // A domain with a fault has no parts that could be asked for.
   if (value.faults().has_any_at("/domain") || value.faults().has_any_at("/boundary")) return {};
+  Quantities quantities(model, problem);
   for (const Value& entry : value.list("an array of quantities, {name, type, …}", limits::quantities))
     quantities.read(entry);
   return quantities.take();

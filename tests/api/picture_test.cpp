@@ -265,5 +265,21 @@ TEST(Picture, OfTheHistoryHasACurveForEachResidualThatIsNotZero) {
   EXPECT_NO_THROW(drawn(two_triangles(1, Eigen::RowVector2d(1, 3)), {Picture::Field::history, {}}));
 }
 
+/// As on a mesh that refines itself, where a level may begin and end without a residual.
+TEST(Picture, OfAHistoryLeavesOutWhatIsZero) {
+  Solution solution = two_triangles(1, Eigen::RowVector2d(1, 3));
+  for (const double penetration : {0., 0., 0.25, 0.5, 0., 0.}) {
+    Iteration row{};
+    row.number = static_cast<int>(solution.history.size()) + 1;
+    row.penetration = penetration;
+    solution.history.push_back(row);
+  }
+  const std::string svg = drawn(solution, {Picture::Field::history, {}});
+  const std::size_t path = svg.find("<path class=\"curve c1\" d=\"M");
+  ASSERT_NE(path, std::string::npos) << svg;
+  const std::string curve = svg.substr(path, svg.find("/>", path) - path);
+  EXPECT_EQ(std::ranges::count(curve, 'M'), 1) << curve;
+}
+
 }  // namespace
 }  // namespace signorini::api::picture_test
