@@ -52,6 +52,7 @@ Enclosure<Series> along(const EdgeLine& edge, const Interval& s, int order) {
 
 Series enclose(const Formula& formula, const EdgeLine& edge, const Interval& s, int order) {
   Enclosure<Series> enclosure = along(edge, s, order);
+  enclosure.strict = order > 0;  // of the values beside an end alone, rounding tells on which side it is
   return formula.evaluate(enclosure);
 }
 

@@ -79,7 +79,7 @@ bool LoadProjection::project_on(const VectorField& body, const std::array<Point,
     });
     if (!own.is_finite && unmet_.empty())
       unmet_.push_back(not_known_to_be_finite(field, (corners[0] + corners[1] + corners[2]) / 3));
-    const bool leaves = own.jumps && own.rest > kMuch * own.between;
+    const bool leaves = own.jumps && own.rest > std::max(kMuch * own.between, kEnclosureRounding * largest);
     load.jumps = load.jumps || leaves;
     load.projection.row(c) = own.quadratic;
     load.balanced.row(c) = leaves ? own.linear : own.quadratic;

@@ -168,7 +168,7 @@ class Sampler {
     const Formula& formula = *field_.formula();
     // Most cells lie on curves: there its derivatives are not known, nor worth their work.
     bool is_undecided = false;
-    const Interval values = range(series_on_triangle(formula, place, 0, is_undecided));
+    const Interval values = range(series_on_triangle(formula, place, 0, is_undecided, true));
     samples_.jumps = values_.jumps = samples_.jumps || is_undecided;
     if (is_undecided || !is_known(values)) return false;
     const Series series = series_on_triangle(formula, place, Series::kMost, is_undecided);
@@ -237,7 +237,7 @@ std::optional<double> only_value(const Field& field, const std::array<Point, 3>&
   if (field.is_constant()) return field(corners[0]);
   if (!field.formula()) return std::nullopt;
   bool undecided = false;
-  const Interval values = range(series_on_triangle(*field.formula(), corners, 0, undecided));
+  const Interval values = range(series_on_triangle(*field.formula(), corners, 0, undecided, true));
   if (undecided || values.lower() != values.upper()) return std::nullopt;
   return values.lower();
 }

@@ -266,14 +266,15 @@ std::vector<Point> clip(const std::vector<Point>& polygon,
   return inside;
 }
 
-Series series_on_triangle(const Formula& formula, const Corners& corners, int order, bool& undecided) {
+Series series_on_triangle(const Formula& formula, const Corners& corners, int order, bool& undecided,
+                          bool strict) {
   const auto& [a, b, c] = corners;
   const Point centroid = (a + b + c) / 3;
   const auto all = [&, &a = a, &b = b, &c = c](int i) {
     const Interval values(std::min({a[i], b[i], c[i]}), std::max({a[i], b[i], c[i]}));
     return Series::line(order, values, values - centroid[i]);
   };
-  Enclosure<Series> enclosure{all(0), all(1), Series(order), Series(order)};
+  Enclosure<Series> enclosure{all(0), all(1), Series(order), Series(order), {}, strict};
   Series series = formula.evaluate(enclosure);
   undecided = enclosure.undecided.has_value();
   return series;

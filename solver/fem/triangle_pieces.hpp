@@ -11,9 +11,9 @@
 namespace signorini {
 
 /// The Taylor coefficients in t of f(x_T + t (x − x_T)) for all t ∈ [0, 1] and all points x of the triangle
-/// at once, x_T its centroid. `undecided` tells whether a jump or a kink may lie in it.
+/// at once, x_T its centroid. `undecided` tells whether a jump or a kink may lie in it. `strict`: Enclosure.
 Series series_on_triangle(const Formula& formula, const std::array<Point, 3>& corners, int order,
-                          bool& undecided);
+                          bool& undecided, bool strict = false);
 
 /// The models of fields, constants or formulas, on a cell.
 using Models = std::vector<TaylorModel>;

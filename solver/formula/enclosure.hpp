@@ -10,7 +10,9 @@ namespace signorini {
 
 /// Evaluates a formula in enclosures of its values on a cell: Series on an interval, TaylorModel on a
 /// triangle. Statements hold almost everywhere: what is so in single points and on lines does not count, and
-/// a difference that is rounding counts as none.
+/// a difference that is rounding counts as none. Where the difference has a slope all over the cell, it has
+/// the other sign on a sliver at most. Where it has none, as around a minimum, rounding may hide a place that
+/// is small but where a function is large: there nothing is decided by rounding, if it is `strict`.
 ///
 /// Where a comparison is not decided on the cell, or a kink may lie in it, the result encloses all cases, and
 /// `undecided` is what changes its sign there: to cut the cell where it is 0 decides it.
@@ -27,6 +29,7 @@ class Enclosure {
 
   Value x, y, nx, ny;
   std::vector<Assumption> assumptions = {};
+  bool strict = true;
   std::optional<Value> undecided = std::nullopt;
 
   Value constant(double value) const { return constant_like(x, value); }
@@ -99,8 +102,9 @@ class Enclosure {
     const Interval& values = range(a);
     const double rounding = kEnclosureRounding * std::max(scale, largest(values));
     if (largest(values) <= kEnclosureRounding * scale) return Sign::zero;
-    if (values.lower() >= -rounding) return Sign::positive;
-    if (values.upper() <= rounding) return Sign::negative;
+    const double least = !strict || has_slope(a, rounding) ? -rounding : rounding;
+    if (values.lower() >= least) return Sign::positive;
+    if (values.upper() <= -least) return Sign::negative;
     for (const Assumption& own : assumptions) {
       if (is_same(own.argument, a)) return own.is_positive ? Sign::positive : Sign::negative;
       if (is_same(own.argument, smooth(Operation::negate, a)))

@@ -292,4 +292,9 @@ Series smooth(Operation operation, const Series& a, const Series& b) {
   }
 }
 
+bool has_slope(const Series& a, double rounding) {
+  if (a.order() == 0 || !is_known(a[1])) return false;
+  return a[1].lower() > rounding || a[1].upper() < -rounding;
+}
+
 }  // namespace signorini

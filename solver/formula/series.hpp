@@ -50,4 +50,7 @@ Series hull(const Series& a, const Series& b);
 
 bool is_same(const Series& a, const Series& b);
 
+/// Its derivative has one sign and is no rounding.
+bool has_slope(const Series& a, double rounding);
+
 }  // namespace signorini

@@ -292,4 +292,13 @@ TaylorModel smooth(Operation operation, const TaylorModel& a, const TaylorModel&
   }
 }
 
+bool has_slope(const TaylorModel& a, double rounding) {
+  // A polynomial of degree 4 whose values are so small beside those of a linear one has a smaller slope, too.
+  constexpr double nearly_linear = 5e-3, sliver = 1e-3;
+  const TaylorModel::LinearPart part = a.linear_part();
+  const auto [least, most] = std::ranges::minmax(part.at_corners);
+  const double rise = most - least;
+  return part.below + part.above <= nearly_linear * rise && rounding <= sliver * rise;
+}
+
 }  // namespace signorini

@@ -76,4 +76,7 @@ TaylorModel hull(const TaylorModel& a, const TaylorModel& b);
 
 bool is_same(const TaylorModel& a, const TaylorModel& b);
 
+/// So nearly linear that it is less than rounding on a sliver at most.
+bool has_slope(const TaylorModel& a, double rounding);
+
 }  // namespace signorini

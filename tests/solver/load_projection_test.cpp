@@ -43,6 +43,30 @@ TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
   }
 }
 
+/// Rounding, beside the numbers on a triangle, must not hide a place that is small but where the load is not.
+TEST(LoadProjection, OverlooksNoPeak) {
+  const auto expect_one = [](const std::string& load, int n) {
+    SCOPED_TRACE(load + " on " + std::to_string(n) + " squares");
+    Problem problem = problems::paper(Scheme::conforming, n);
+    problem.body = problems::formula(load);
+    const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
+    const LoadProjection loads(problem, mesh);
+    double uncertain = 0;
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) uncertain += loads[t].uncertain_force;
+    EXPECT_NEAR(integral(loads, mesh), 1, uncertain + 1e-9);
+  };
+  // A vertex, the middle of an edge, and no point of the mesh.
+  for (const auto& [a, b] : {std::pair{"0.5", "0.5"}, {"0.625", "0.5"}, {"0.51", "0.52"}})
+    for (const double radius : {1e-6, 1e-8, 1e-9, 1e-12}) {
+      const std::string square = problems::digits(radius * radius);
+      expect_one("(x - " + std::string(a) + ")^2 + (y - " + b + ")^2 < " + square + " ? 1 / (pi * " + square +
+                     ") : 0",
+                 4);
+    }
+  expect_one("(x - 0.51)^2 < 1e-18 ? 5e8 : 0", 4);
+  expect_one("(x - 0.5)^2 < 1e-18 ? 5e8 : 0", 4);
+}
+
 /// Beside what a quotient divides by, its enclosure is without bound, or as good as that, and its values are
 /// not.
 TEST(LoadProjection, HasTheValuesOfAQuotientOfWhatVanishes) {
