@@ -1,7 +1,7 @@
 # Writes OUTPUT, the C++ source of FUNCTION, which returns the texts of the list FILES by name: `const
 # std::vector<TYPE>& FUNCTION()` in the namespace NAMESPACE, declared in HEADER; TYPE is built from a name, the
 # file's without `.json`, and a text. If LIGHT is true, the texts come without indentation and without lines that are
-# comments (`//`): browsers load less.
+# comments (`//`): browsers load less. If BYTES is true, they are taken byte by byte.
 
 # Raw string literals that follow each other are one; compilers guarantee 65536 characters each.
 set(longest_literal 65536)
@@ -10,6 +10,14 @@ set(entries "")
 foreach(file IN LISTS FILES)
   get_filename_component(name ${file} NAME)
   string(REGEX REPLACE "[.]json$" "" name ${name})
+  if(BYTES)
+    file(READ ${file} text HEX)
+    string(LENGTH "${text}" length)
+    math(EXPR length "${length} / 2")
+    string(REGEX REPLACE "(..)" "\\\\x\\1" text "${text}")
+    string(APPEND entries "      {\"${name}\", std::string(\"${text}\", ${length})},\n")
+    continue()
+  endif()
   file(READ ${file} text)
   if(LIGHT)
     string(REGEX REPLACE "\n[ \t]+" "\n" text "\n${text}")

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "api/document/gzip.hpp"
 #include "api/examples.hpp"
 #include "api/picture/picture.hpp"
 #include "api/problem/problem_json.hpp"
@@ -33,12 +34,16 @@ api::Picture picture_of(const Problem& problem, const Solution& solution) {
 void draw(const api::Example& example, const std::string& directory) {
   const api::Request request = api::parse_request(example.json);
   const Solution solution = solve(request.problem, request.settings);
-  std::ofstream file(directory + "/" + std::string(example.name) + ".svg");
+  std::ofstream file(directory + "/" + std::string(example.name) + ".svg.gz", std::ios::binary);
   file.exceptions(std::ios::badbit | std::ios::failbit);
-  api::write_picture(solution, picture_of(request.problem, solution), [&](std::string_view piece) {
+  const api::Sink to_file = [&](std::string_view piece) {
     file << piece;
     return true;
-  });
+  };
+  api::Gzip gzip(to_file, api::Effort::most);
+  api::write_picture(solution, picture_of(request.problem, solution),
+                     [&](std::string_view piece) { return gzip.put(piece); });
+  gzip.finish();
 }
 
 }  // namespace

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <string_view>
+#include <string>
 #include <vector>
 
 namespace signorini::server {
 
 /// What an example looks like once it is solved, as draw_examples.cpp draws it.
 struct ExamplePicture {
-  std::string_view name;  ///< the example's, with the ending `.svg`
-  std::string_view svg;
+  std::string name;        ///< the example's, with the ending `.svg.gz`
+  std::string compressed;  ///< an SVG, by gzip
 };
 
 /// One for each example.

@@ -10,12 +10,16 @@
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/downloads.hpp"
 #include "server/handlers/intake.hpp"
+#include "server/http/content.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 #include "solve.hpp"
 
 namespace signorini::server {
 namespace {
+
+/// More than any picture of an example takes.
+constexpr std::size_t longest_picture = 4'000'000;
 
 /// The example of the path. Throws HttpError 404.
 const api::Example& find_example(const Request& request) {
@@ -62,10 +66,11 @@ Response get_example(Service&, const Request& request) {
 
 Response get_example_picture(Service&, const Request& request) {
   allow_only(request.query, {});
-  const std::string file = std::string(find_example(request).name) + ".svg";
+  const std::string file = std::string(find_example(request).name) + ".svg.gz";
   Response response = Response::empty(200);
   response.content_type = svg_media_type;
-  response.body = std::ranges::find(example_pictures(), file, &ExamplePicture::name)->svg;
+  response.compressed = &std::ranges::find(example_pictures(), file, &ExamplePicture::name)->compressed;
+  if (!request.accepts_gzip) response.body = decoded(*response.compressed, {"gzip"}, longest_picture);
   return response;
 }
 

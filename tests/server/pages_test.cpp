@@ -95,6 +95,10 @@ TEST_F(PagesTest, ShowEveryExampleAsAPicture) {
     EXPECT_EQ(reply->get_header_value("Content-Type"), "image/svg+xml");
     EXPECT_TRUE(reply->body.starts_with("<svg ")) << example.name;
     EXPECT_TRUE(reply->body.ends_with("</svg>\n")) << example.name;
+    const auto plain = client_.Get("/v1/examples/" + std::string(example.name) + "/picture.svg",
+                                   {{"Accept-Encoding", "identity"}});
+    EXPECT_FALSE(plain->has_header("Content-Encoding")) << example.name;
+    EXPECT_EQ(plain->body, reply->body) << example.name;
   }
   expect_problem(get("/v1/examples/none/picture.svg"), 404);
 }
