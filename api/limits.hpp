@@ -25,6 +25,8 @@ inline constexpr std::size_t vertices = most_vertices, arcs = most_arcs, holes =
                              local_sizes = most_local_sizes;
 inline constexpr std::size_t tags = 16;
 inline constexpr std::size_t quantities = 100;
+/// Of the polygon that a quantity is a mean over.
+inline constexpr std::size_t outline_corners = 32;
 /// Of the boundary, each of which may have a condition.
 inline constexpr std::size_t parts = vertices + holes;
 

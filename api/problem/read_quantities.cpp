@@ -56,6 +56,34 @@ std::optional<std::vector<Point>> read_points(const Value& value, std::size_t co
   return points;
 }
 
+/// Positive of corners that go around it to the left.
+double signed_area(const std::vector<Point>& corners) {
+  double twice = 0;
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    const Vector one = corners[i] - corners[0], other = corners[i + 1] - corners[0];
+    twice += one.x() * other.y() - one.y() * other.x();
+  }
+  return twice / 2;
+}
+
+/// 1 over the area in a polygon and 0 beside it: the triangles from its first corner, counted as they go
+/// around, add up to it.
+std::string mean_over(const std::vector<Point>& corners, double area) {
+  const auto is_left = [](const Point& a, const Point& b) {
+    return "(" + digits(b.x() - a.x()) + " * (y - " + digits(a.y()) + ") > " + digits(b.y() - a.y()) +
+           " * (x - " + digits(a.x()) + "))";
+  };
+  std::string sum = "0";
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+    std::vector<Point> own{corners[0], corners[i], corners[i + 1]};
+    const bool turns = signed_area(own) < 0;
+    if (turns) std::swap(own[1], own[2]);
+    sum += " + (" + is_left(own[0], own[1]) + " && " + is_left(own[1], own[2]) + " && " +
+           is_left(own[2], own[0]) + " ? " + digits((turns ? -1 : 1) / area) + " : 0)";
+  }
+  return sum;
+}
+
 /// 0 beyond the first and the last point, 1 between the two in the middle.
 std::string trapezoid(const Point& a, const Point& b, const Point& c, const Point& d) {
   return "max(0, min(1, min(" + along(a, b) + ", " + along(d, c) + ")))";
@@ -131,6 +159,7 @@ class Quantities {
 
   static const Names<ReadType>& types() {
     static const Names<ReadType> all{{"pressure_force", &Quantities::read_pressure_force},
+                                     {"opening", &Quantities::read_opening},
                                      {"reaction", &Quantities::read_reaction},
                                      {"mean_displacement", &Quantities::read_mean_displacement}};
     return all;
@@ -167,8 +196,11 @@ class Quantities {
     return std::nullopt;
   }
 
-  void read_pressure_force(const Object& object) {
-    object.allow({"name", "type", "part", "weight"}, "a force of contact");
+  void read_pressure_force(const Object& object) { read_weighed(object, quantity_.weights); }
+  void read_opening(const Object& object) { read_weighed(object, quantity_.openings); }
+
+  void read_weighed(const Object& object, std::map<std::string, Field>& weights) {
+    object.allow({"name", "type", "part", "weight"}, "a quantity of a contact");
     const auto member = object.require("part", "the contact that is asked about");
     const auto part =
         member ? read_part(
@@ -176,7 +208,7 @@ class Quantities {
                : std::nullopt;
     Field weight(1);
     if (const auto given = object.find("weight")) weight = read_weight(*given).value_or(weight);
-    if (part) quantity_.weights.emplace(*part, weight);
+    if (part) weights.emplace(*part, weight);
   }
 
   /// A direction of an elastic body, of length 1; of a membrane there is but one.
@@ -202,7 +234,8 @@ class Quantities {
     const auto member = object.require("part", "the support that is asked about");
     const auto part =
         member ? read_part(
-                     *member, [&](const auto& name) { return has<Fixed>(name); }, "a part that is fixed")
+                     *member, [&](const auto& name) { return has<Fixed>(name) || has<Roller>(name); },
+                     "a part that is fixed or on rollers")
                : std::nullopt;
     SupportMotion motion{{1, 0}, 0};
     const auto about = object.find("about");
@@ -219,11 +252,12 @@ class Quantities {
   }
 
   void read_mean_displacement(const Object& object) {
-    object.allow({"name", "type", "part", "disc", "direction"}, "a mean displacement");
-    const auto part = object.find("part"), disc = object.find("disc");
-    if (part.has_value() == disc.has_value()) {
-      object.require("part", "the part over which the mean is taken, if no disc is given");
-      if (part) part->fault("must not stand beside a disc");
+    object.allow({"name", "type", "part", "disc", "polygon", "direction"}, "a mean displacement");
+    const auto part = object.find("part"), disc = object.find("disc"), polygon = object.find("polygon");
+    if (part.has_value() + disc.has_value() + polygon.has_value() != 1) {
+      object.require("part", "the part over which the mean is taken, if no disc or polygon is given");
+      if (part) part->fault("must not stand beside a disc or polygon");
+      if (disc && polygon) disc->fault("must not stand beside a polygon");
     }
     const Vector direction = read_direction(object);
     if (model_ == Model::elasticity)
@@ -237,7 +271,32 @@ class Quantities {
       if (name) quantity_.densities.emplace(*name, times(direction, Field(1, part->pointer())));
     } else if (disc) {
       read_disc(*disc, direction);
+    } else if (polygon) {
+      read_outline(*polygon, direction);
     }
+  }
+
+  void read_outline(const Value& value, const Vector& direction) {
+    Outline outline{{}, value.pointer()};
+    bool is_sound = value.json().is_array();
+    value.for_each("an array of points, [x, y]", [&](const Value& entry) {
+      const auto point = read_pair(entry, "a point, [x, y]", false);
+      is_sound = is_sound && point;
+      if (point) outline.corners.push_back(*point);
+    });
+    if (!is_sound) return;
+    const std::size_t n = outline.corners.size();
+    if (n < 3 || n > limits::outline_corners) {
+      value.fault("must have 3 to " + std::to_string(limits::outline_corners) + " corners");
+      return;
+    }
+    const double area = signed_area(outline.corners);
+    if (!std::isnormal(area) || !std::isnormal(1 / area)) {
+      value.fault("has an area that is 0, or smaller or larger than double precision can tell");
+      return;
+    }
+    quantity_.density = times(direction, formula(value, mean_over(outline.corners, area)));
+    quantity_.outline = std::move(outline);
   }
 
   void read_disc(const Value& value, const Vector& direction) {

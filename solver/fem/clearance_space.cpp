@@ -15,13 +15,18 @@ namespace {
 
 /// What the other parts say of the normal displacement at their points, where a contact part begins or ends.
 struct HeldPoints {
-  std::unordered_map<int, Vector> fixed;      ///< u on Γ_D; for a membrane in the first component
-  std::unordered_multimap<int, int> rollers;  ///< the roller edges
+  std::unordered_map<int, Vector> fixed;  ///< u on Γ_D; for a membrane in the first component
+  struct Rolling {
+    int edge;
+    Vector moved;
+  };
+  std::unordered_multimap<int, Rolling> rollers;
 
   HeldPoints(const Problem& problem, const Mesh& mesh) {
     for (const BoundaryPart& part : mesh.boundary) {
       if (const auto* condition = condition_on<Fixed>(problem, part.name)) add_fixed(*condition, part, mesh);
-      if (condition_on<Roller>(problem, part.name)) add_roller(part, mesh);
+      if (const auto* roller = condition_on<Roller>(problem, part.name))
+        add_roller(part, roller->motion, mesh);
     }
   }
 
@@ -36,9 +41,10 @@ struct HeldPoints {
       }
   }
 
-  void add_roller(const BoundaryPart& part, const Mesh& mesh) {
+  void add_roller(const BoundaryPart& part, const SupportMotion& motion, const Mesh& mesh) {
     for (const int edge : part.edges)
-      for (const int point : mesh.edges[edge]) rollers.emplace(point, edge);
+      for (const int point : mesh.edges[edge])
+        rollers.emplace(point, Rolling{edge, motion(mesh.points[point])});
   }
 };
 
@@ -130,10 +136,12 @@ class Builder {
     if (fixed != held_.fixed.end())
       return components_ == 1 ? -fixed->second.x() : fixed->second.dot(direction);
     const auto [begin, end] = held_.rollers.equal_range(node);
-    for (auto roller = begin; roller != end; ++roller)
-      if (is_same_direction(mesh_.outward_normal(roller->second), direction,
-                            mesh_.rounding_of_normal(roller->second) + mesh_.rounding_of_normal(edge)))
-        return 0;
+    for (auto own = begin; own != end; ++own) {
+      const auto& [roller, moved] = own->second;
+      if (is_same_direction(mesh_.outward_normal(roller), direction,
+                            mesh_.rounding_of_normal(roller) + mesh_.rounding_of_normal(edge)))
+        return moved.dot(direction);
+    }
     return std::nullopt;
   }
 

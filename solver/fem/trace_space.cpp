@@ -28,7 +28,7 @@ TraceSpace::TraceSpace(const Problem& problem, const Mesh& mesh, const Clearance
   number_triangles();
   for (const BoundaryPart& part : mesh.boundary) {
     if (const auto* fixed = condition_on<Fixed>(problem, part.name)) fix(part, fixed->value);
-    if (condition_on<Roller>(problem, part.name)) roll(part);
+    if (const auto* roller = condition_on<Roller>(problem, part.name)) roll(part, roller->motion);
   }
   reserve_contact(clearance);
   for (CouplingDof& dof : dofs_)
@@ -50,10 +50,16 @@ void TraceSpace::fix(const BoundaryPart& part, const VectorField& value) {
     }
 }
 
-void TraceSpace::roll(const BoundaryPart& part) {
+void TraceSpace::roll(const BoundaryPart& part, const SupportMotion& motion) {
   for (const int edge : part.edges) {
-    turn(edge, mesh_.outward_normal(edge));
-    for (int j = 0; j <= order_; ++j) at(edge, j, 0) = {-1, 0, 1};
+    const Vector normal = mesh_.outward_normal(edge);
+    const auto& [a, b] = mesh_.edges[edge];
+    turn(edge, normal);
+    for (int j = 0; j <= order_; ++j) {
+      const Point x =
+          order_ == 0 ? Point((mesh_.points[a] + mesh_.points[b]) / 2) : mesh_.points[j == 0 ? a : b];
+      at(edge, j, 0) = {-1, motion(x).dot(normal), 1};
+    }
   }
 }
 

@@ -69,7 +69,7 @@ class TraceSpace {
   void number_triangles();
   int dof_of(int triangle, int local) const;
   void fix(const BoundaryPart& part, const VectorField& value);
-  void roll(const BoundaryPart& part);
+  void roll(const BoundaryPart& part, const SupportMotion& motion);
   void reserve_contact(const ClearanceSpace& clearance);
   void turn(int edge, const Vector& direction);
   /// The changes in the components that each edge carries.

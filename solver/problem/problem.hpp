@@ -18,8 +18,11 @@ struct Fixed {
   VectorField value;
 };
 
-/// u_n = 0 and no tangential stress; elasticity only.
-struct Roller {};
+/// u_n = motion · n and no tangential stress; elasticity only. No problem that is read moves its rollers,
+/// neighbour() does.
+struct Roller {
+  SupportMotion motion = {};
+};
 
 /// σ n = value. A part without a condition is free: traction 0.
 struct Traction {

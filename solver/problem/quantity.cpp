@@ -33,7 +33,13 @@ Problem neighbour(const Problem& problem, const Quantity& quantity, double z) {
     contact.gap = contact.gap.plus(z, weight);
   }
   for (const auto& [part, motion] : quantity.motions) {
-    Fixed& fixed = std::get<Fixed>(all.boundary.at(part));
+    Condition& condition = all.boundary.at(part);
+    if (auto* roller = std::get_if<Roller>(&condition)) {
+      roller->motion.translation -= z * motion.translation;
+      roller->motion.rotation -= z * motion.rotation;
+      continue;
+    }
+    Fixed& fixed = std::get<Fixed>(condition);
     fixed.value = fixed.value.plus(-z, field_of(motion, components(problem.material)));
   }
   for (const auto& [part, density] : quantity.densities) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "problem/field.hpp"
 
@@ -15,6 +16,8 @@ struct Problem;
 struct SupportMotion {
   Vector translation = Vector::Zero();
   double rotation = 0;
+
+  Vector operator()(const Point& x) const { return translation + rotation * Vector(-x.y(), x.x()); }
 };
 
 /// A disc in the body, over which a mean is taken.
@@ -24,13 +27,20 @@ struct Disc {
   std::string name;  ///< the path of the member that it came from
 };
 
+/// A polygon in the body, over which a mean is taken; no two of its sides cross.
+struct Outline {
+  std::vector<Point> corners;
+  std::string name;  ///< the path of the member that it came from
+};
+
 /// A number that is linear in the solution and that the certificate encloses:
 ///
 ///     Q = <p, w> + (q, u) + <r, u> + Σ ∫ ρ·σn,
 ///
-/// with weights w on contact parts, densities q in the domain and r on parts of Γ_F, and motions ρ of fixed
-/// parts, where σn is what acts on the body. Each of them is along which data change in neighbour(), and −Q
-/// is how the least energy changes with them (certify/THEORY.md, section 9).
+/// with weights w on contact parts, densities q in the domain and r on parts of Γ_F, and motions ρ of parts
+/// that are fixed or on rollers, where σn is what acts on the body. Each of them is along which data change
+/// in neighbour(), and −Q is how the least energy changes with them (certify/THEORY.md, section 9). Or Q = ∫
+/// w λ tells how far a contact is open.
 struct Quantity {
   std::string name;
   std::map<std::string, Field> weights;          ///< w, by parts
@@ -38,13 +48,17 @@ struct Quantity {
   std::map<std::string, VectorField> densities;  ///< r, by parts
   std::map<std::string, SupportMotion> motions;  ///< ρ, by parts
   bool is_mean = false;                          ///< it is divided by the length of the parts with a density
-  std::optional<Disc> disc;                      ///< in which alone q is not 0; it must lie in the domain
+  /// In which alone q is not 0; it must lie in the domain.
+  std::optional<Disc> disc;
+  std::optional<Outline> outline;
+  std::map<std::string, Field> openings;  ///< w of ∫ w λ, by parts; then there is nothing else
 
   /// Its neighbours have the loads of the problem.
   bool has_no_loads() const { return density.size() == 0 && densities.empty(); }
 };
 
-/// The problem with the gaps g + z w, the load f + z q, the tractions t + z r and the fixed values u_D − z ρ.
+/// The problem with the gaps g + z w, the load f + z q, the tractions t + z r, the fixed values u_D − z ρ and
+/// the rollers moved by −z ρ.
 /// Its operator is the same.
 Problem neighbour(const Problem& problem, const Quantity& quantity, double z);
 

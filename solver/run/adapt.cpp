@@ -42,7 +42,8 @@ class Levels {
   /// By which the next mesh is made.
   const Eigen::VectorXd& shares() const {
     const EnclosedQuantity* quantity = goal_quantity(finest_->summary);
-    return quantity && quantity->is_bounded() ? quantity->shares : finest_->error_squares;
+    return quantity && quantity->is_bounded() && quantity->shares.size() > 0 ? quantity->shares
+                                                                             : finest_->error_squares;
   }
 
   void add(Solution solution) {

@@ -318,7 +318,13 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
                          counts.across};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
-  if (!problem_.quantities.empty()) estimate.memory_bytes += memory_of_neighbours(spaces, sizes.triangles);
+  if (!problem_.quantities.empty()) {
+    // The body without its contacts is factored beside the problem.
+    const bool opens = std::ranges::any_of(
+        problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
+    if (opens) estimate.memory_bytes *= 2;
+    estimate.memory_bytes += memory_of_neighbours(spaces, sizes.triangles);
+  }
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);

@@ -12,6 +12,7 @@
 #include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
+#include "run/openings.hpp"
 
 namespace signorini {
 namespace {
@@ -31,6 +32,9 @@ double relative_step(double relative_radius) {
 constexpr double kLeastStep = 0.5, kMostStep = 4;
 /// The guess is no further off: what moves the stress by less does not touch what is asked for.
 constexpr double kMostCorrection = 100;
+
+/// A way that is so short beside R leaves the width to R² / z: a step that makes both equal is better.
+constexpr double kShortWay = 0.25;
 
 /// Where the data of a neighbour contradict each other, as at a support beside a contact that nearly touches,
 /// a shorter step may not.
@@ -198,6 +202,34 @@ class Encloser {
   EnclosedQuantity operator()(const Quantity& quantity) {
     EnclosedQuantity own;
     own.name = quantity.name;
+    if (quantity.openings.empty())
+      enclose_by_neighbours(quantity, own);
+    else
+      enclose_opening(quantity, own);
+    own.guaranteed = own.is_bounded() && own.unmet.empty();
+    if (own.is_bounded() && !(own.lower <= own.value && own.value <= own.upper))
+      own.estimate = (own.lower + own.upper) / 2;
+    if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
+    if (!std::isfinite(own.value) || !std::isfinite(own.estimate))
+      throw SolveError("the numbers of the quantity " + own.name +
+                       " leave the range of double precision: take a smaller weight");
+    return own;
+  }
+
+ private:
+  const Discretization& discrete() const { return condensed_.discretization(); }
+
+  void enclose_opening(const Quantity& quantity, EnclosedQuantity& own) {
+    own.value = own.estimate =
+        opening_of(quantity, discrete(), discrete().clearance.clearance(fields_.clearance));
+    own.unmet = base_.unmet;
+    const auto [lower, upper] =
+        signorini::enclose_opening(quantity, base_, enclosure_.radius(), settings_, progress_, own.unmet);
+    own.lower = lower;
+    own.upper = upper;
+  }
+
+  void enclose_by_neighbours(const Quantity& quantity, EnclosedQuantity& own) {
     own.value = own.estimate = value_of(quantity, discrete(), fields_, solution_, progress_);
     double shorter = 1;
     for (int tries = 0; tries < kTries; ++tries, shorter *= kShorter) {
@@ -212,18 +244,7 @@ class Encloser {
         add({failure.what()}, own.unmet);
       }
     }
-    own.guaranteed = own.is_bounded() && own.unmet.empty();
-    if (own.is_bounded() && !(own.lower <= own.value && own.value <= own.upper))
-      own.estimate = (own.lower + own.upper) / 2;
-    if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
-    if (!std::isfinite(own.value) || !std::isfinite(own.estimate))
-      throw SolveError("the numbers of the quantity " + own.name +
-                       " leave the range of double precision: take a smaller weight");
-    return own;
   }
-
- private:
-  const Discretization& discrete() const { return condensed_.discretization(); }
 
   std::unique_ptr<Neighbour> at(const Quantity& quantity, double z) const {
     return std::make_unique<Neighbour>(discrete().problem, quantity, z, condensed_, fields_, settings_,
@@ -243,24 +264,33 @@ class Encloser {
       z *= std::clamp(wanted / moved, 1 / kMostCorrection, kMostCorrection);
       plus = at(quantity, z);
     }
-    const CertifiedSolution of_plus = plus->certified(laws_, progress_);
-    add(of_plus.unmet, own.unmet);
-    auto [lower, upper, shares] = bounds(quantity, of_plus, z, own);
-    own.lower = lower;
-    own.upper = upper;
+    QuantityEnclosure::Bounds found = bounds(quantity, *plus, z, own.unmet);
+    if (own.unmet.size() == base_.unmet.size() && 0 < found.way && found.way < kShortWay * radius) {
+      plus.reset();
+      std::vector<std::string> unmet = own.unmet;
+      const double longer = z * radius / found.way;
+      QuantityEnclosure::Bounds other = bounds(quantity, *at(quantity, longer), longer, unmet);
+      if (unmet.size() == own.unmet.size() && other.upper - other.lower < found.upper - found.lower)
+        found = std::move(other);
+    }
+    own.lower = found.lower;
+    own.upper = found.upper;
     // The largest that there is in memory, and asked for by a mesh that refines itself alone.
     const std::optional<Adaptive>& adaptive = discrete().problem.mesh.adaptive;
-    if (adaptive && adaptive->quantity == quantity.name) own.shares = std::move(shares);
+    if (adaptive && adaptive->quantity == quantity.name) own.shares = std::move(found.shares);
   }
 
-  QuantityEnclosure::Bounds bounds(const Quantity& quantity, const CertifiedSolution& plus, double z,
-                                   EnclosedQuantity& own) {
-    if (is_admissible_reflected(base_, plus, quantity, z, progress_))
-      return enclosure_.reflected(quantity, plus, z);
+  /// By a neighbour at z, and one at −z where that will not do. Adds to `unmet` why they do not count.
+  QuantityEnclosure::Bounds bounds(const Quantity& quantity, Neighbour& plus, double z,
+                                   std::vector<std::string>& unmet) {
+    const CertifiedSolution of_plus = plus.certified(laws_, progress_);
+    add(of_plus.unmet, unmet);
+    if (is_admissible_reflected(base_, of_plus, quantity, z, progress_))
+      return enclosure_.reflected(quantity, of_plus, z);
     const std::unique_ptr<Neighbour> minus = at(quantity, -z);
     const CertifiedSolution of_minus = minus->certified(laws_, progress_);
-    add(of_minus.unmet, own.unmet);
-    return enclosure_(quantity, plus, of_minus, z);
+    add(of_minus.unmet, unmet);
+    return enclosure_(quantity, of_plus, of_minus, z);
   }
 
   const CondensedProblem& condensed_;

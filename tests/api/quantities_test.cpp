@@ -80,6 +80,31 @@ TEST(ReadQuantities, MeansHaveADensity) {
   EXPECT_EQ(disc.disc->radius, 0.25);
 }
 
+/// Whatever corner it begins with and whichever way it goes around.
+TEST(ReadQuantities, MeansOverAPolygonHaveADensityInsideAlone) {
+  const std::vector<Point> corners{{1.2, 0.2}, {1.2, 0.4}, {0.4, 0.4}, {0.4, 0.8}, {0.2, 0.8}, {0.2, 0.2}};
+  for (const bool reversed : {false, true})
+    for (std::size_t first = 0; first < corners.size(); ++first) {
+      json points;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Point& x = corners[(first + (reversed ? corners.size() - i : i)) % corners.size()];
+        points.push_back({x.x(), x.y()});
+      }
+      const Quantity mean =
+          read({{"name", "m"}, {"type", "mean_displacement"}, {"polygon", points}, {"direction", {0, 1}}});
+      for (const Point& inside : {Point(0.3, 0.7), Point(0.25, 0.3), Point(1.1, 0.3)})
+        EXPECT_NEAR(mean.density(1, inside), 1 / 0.28, 1e-12) << first;
+      for (const Point& outside : {Point(0.5, 0.5), Point(0.1, 0.3), Point(1.1, 0.41), Point(0.7, 0.1)})
+        EXPECT_NEAR(mean.density(1, outside), 0, 1e-12) << first;
+      EXPECT_EQ(mean.outline->corners.size(), 6u);
+    }
+}
+
+TEST(ReadQuantities, OpeningsHaveAWeight) {
+  EXPECT_EQ(read({{"name", "o"}, {"type", "opening"}, {"part", "bottom"}}).openings.at("bottom")(Point(1, 0)),
+            1);
+}
+
 /// The pointers of the faults.
 std::vector<std::string> faults(const json& quantities) {
   std::vector<std::string> pointers;
@@ -144,7 +169,15 @@ TEST(ReadQuantities, FaultsHaveTheirPlace) {
         {"type", "mean_displacement"},
         {"disc", {{"centre", {1, 0.5}}, {"radius", 0}}},
         {"direction", {1, 0}}},
-       "/disc/radius"}};
+       "/disc/radius"},
+      {{{"name", "u"}, {"type", "mean_displacement"}, {"polygon", {{0, 0}, {1, 1}}}, {"direction", {1, 0}}},
+       "/polygon"},
+      {{{"name", "u"},
+        {"type", "mean_displacement"},
+        {"polygon", {{0, 0}, {1, 1}, {2, 2}}},
+        {"direction", {1, 0}}},
+       "/polygon"},
+      {{{"name", "o"}, {"type", "opening"}, {"part", "top"}}, "/part"}};
   for (const auto& [quantity, place] : cases)
     EXPECT_EQ(faults(json::array({quantity})), std::vector{"/quantities/0" + place}) << quantity;
   const json force{{"name", "f"}, {"type", "pressure_force"}, {"part", "bottom"}};

@@ -22,7 +22,7 @@ from .local import Local
 from .material import HookeTensor, MembraneMaterial, YoungPoisson
 from .mesh_request import Adaptive, LocalSize, MeshRequest
 from .problem import Load, Problem, Solver, Variation
-from .quantity import Disc, MeanDisplacement, PressureForce, SupportReaction, Weight
+from .quantity import Disc, MeanDisplacement, Opening, PressureForce, SupportReaction, Weight
 from .result import Result
 from .study import Exact, Study
 from .summary import EnclosedQuantity, Estimate, Summary
@@ -53,6 +53,7 @@ __all__ = [
     "NotInResult",
     "PackageMissing",
     "Polygon",
+    "Opening",
     "PressureForce",
     "Problem",
     "Rectangle",

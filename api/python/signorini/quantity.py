@@ -37,25 +37,36 @@ class PressureForce:
 
 
 @dataclass(frozen=True)
+class Opening:
+    """∫ w λ over a contact part, λ the clearance."""
+
+    type: ClassVar[str] = "opening"
+    name: str  #: by which it is found in the result
+    part: str  #: one with a contact
+    weight: Weight | None = None  #: w; 1 on the whole part if it is left out
+
+
+@dataclass(frozen=True)
 class SupportReaction:
     """What a support exerts on the body: of an elastic body along `direction` or `about` a point."""
 
     type: ClassVar[str] = "reaction"
     name: str  #: by which it is found in the result
-    part: str  #: one that is fixed
+    part: str  #: one that is fixed or on rollers
     direction: Pair | None = None  #: elasticity only; of any length
     about: Pair | None = None  #: the point of the moment; elasticity only
 
 
 @dataclass(frozen=True)
 class MeanDisplacement:
-    """The mean of u along `direction` over a part of the boundary or over a disc, exactly one of them."""
+    """The mean of u along `direction` over a part of the boundary, a disc or a polygon, exactly one of them."""
 
     type: ClassVar[str] = "mean_displacement"
     name: str  #: by which it is found in the result
     part: str | None = None  #: one that is free or has a traction
     disc: Disc | None = None
+    polygon: Sequence[Pair] | None = None  #: the corners of one in the body
     direction: Pair | None = None  #: for an elastic body, which needs one; of any length
 
 
-Quantity = Union[PressureForce, SupportReaction, MeanDisplacement]
+Quantity = Union[PressureForce, Opening, SupportReaction, MeanDisplacement]

@@ -107,7 +107,7 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, c
   set_middles(coupling);
   for (const BoundaryPart& part : discrete.mesh.boundary) {
     if (const auto* fixed = condition_on<Fixed>(discrete.problem, part.name)) fix(part, *fixed);
-    if (condition_on<Roller>(discrete.problem, part.name)) roll(part);
+    if (const auto* roller = condition_on<Roller>(discrete.problem, part.name)) roll(part, roller->motion);
   }
   CellBudget budget{kCellsOfGaps, &progress};
   lower_points(budget);
@@ -287,10 +287,13 @@ void AdmissibleDisplacement::constrain_points() {
     constraints_[point].push_back(std::move(constraint));
   };
   for (const BoundaryPart& part : mesh.boundary)
-    if (condition_on<Roller>(discrete_.problem, part.name))
+    if (const auto* roller = condition_on<Roller>(discrete_.problem, part.name))
       for (const int edge : part.edges)
-        for (const int point : mesh.edges[edge])
-          constrain(point, {mesh.outward_normal(edge), 0, true, true, mesh.rounding_of_normal(edge)});
+        for (const int point : mesh.edges[edge]) {
+          const Vector n = mesh.outward_normal(edge);
+          constrain(point, {n, roller->motion(mesh.points[point]).dot(n), true, true,
+                            mesh.rounding_of_normal(edge)});
+        }
   for (const ContactEdge& contact : discrete_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
@@ -434,10 +437,13 @@ void AdmissibleDisplacement::add_rest(int edge, const EdgeLine& line, const Fiel
   rest.slope += (d + slope) * hats[e].norm() + slope * of_b;
 }
 
-void AdmissibleDisplacement::roll(const BoundaryPart& part) {
+void AdmissibleDisplacement::roll(const BoundaryPart& part, const SupportMotion& motion) {
+  const Mesh& mesh = discrete_.mesh;
   for (const int edge : part.edges) {
-    const Eigen::VectorXd n = discrete_.mesh.outward_normal(edge);
-    middles_.col(edge) -= n.dot(middles_.col(edge)) * n;
+    const Eigen::VectorXd n = mesh.outward_normal(edge);
+    const auto& [a, b] = mesh.edges[edge];
+    const Vector moved = motion((mesh.points[a] + mesh.points[b]) / 2);
+    middles_.col(edge) -= n.dot(middles_.col(edge) - moved) * n;
   }
 }
 

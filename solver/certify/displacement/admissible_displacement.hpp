@@ -99,7 +99,7 @@ class AdmissibleDisplacement {
   void fix(const BoundaryPart& part, const Fixed& condition);
   void add_rest(int edge, const EdgeLine& line, const Field& field);
   double small_coefficient() const;
-  void roll(const BoundaryPart& part);
+  void roll(const BoundaryPart& part, const SupportMotion& motion);
   void lower_points(CellBudget& budget);
   void meet(const ContactEdge& contact, CellBudget& budget);
   void close(const ContactEdge& contact);

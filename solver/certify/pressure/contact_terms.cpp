@@ -41,6 +41,35 @@ ContactTerms::Work ContactTerms::work(const ContactPressure& pressure,
   return sum;
 }
 
+/// The rule is exact for a linear weight; what w has beyond that counts as unknown.
+ContactTerms::Work ContactTerms::opening(const Field& weight, const AdmissibleDisplacement& v,
+                                         CellBudget& budget) const {
+  const EdgeLine line(discrete_.mesh, contact_.edge);
+  const double size = std::abs(line.value(weight, 0)) + std::abs(line.value(weight, 0.5)) +
+                      std::abs(line.value(weight, 1)),
+               largest_v = v.largest_on(discrete_.mesh.edge_triangles[contact_.edge][0]);
+  const auto from = [](const EdgePiece& piece, std::size_t first) {
+    double sum = piece.remainder;
+    for (std::size_t k = first; k < piece.coefficients.size(); ++k)
+      sum += std::abs(piece.coefficients[k]) * std::pow(piece.length() / 2, k);
+    return sum;
+  };
+  Work sum;
+  for (const EdgePiece& w : pieces_on_edge(weight, line, kMeanTolerance * size, budget))
+    for (const EdgePiece& g : pieces_) {
+      const double begin = std::max(w.begin, g.begin), length = std::min(w.end, g.end) - begin;
+      if (!(length > 0)) continue;
+      for (int q = 0; q < EdgeRule::size; ++q) {
+        const double s = begin + length * edge_rule().points[q];
+        const double linear = w.coefficients[0] + w.coefficients[1] * (s - w.middle());
+        sum.value +=
+            length_ * length * edge_rule().weights[q] * linear * (g(s) - v.along_contact(contact_, s));
+      }
+      sum.radius += length_ * length * (from(w, 0) * g.remainder + from(w, 2) * (from(g, 0) + largest_v));
+    }
+  return sum;
+}
+
 double ContactTerms::operator()(const ContactPressure& pressure, const AdmissibleDisplacement& v) const {
   const Work own = work(pressure, v);
   return 2 * std::max(0., own.value + own.radius);

@@ -25,6 +25,9 @@ class ContactTerms {
   };
   Work work(const ContactPressure& pressure, const AdmissibleDisplacement& v) const;
 
+  /// ∫ w (g − v_n), and what that may be off by.
+  Work opening(const Field& weight, const AdmissibleDisplacement& v, CellBudget& budget) const;
+
  private:
   const Discretization& discrete_;
   const int edge_;

@@ -5,14 +5,12 @@
 #include <utility>
 
 #include "certify/pressure/contact_terms.hpp"
+#include "certify/rounding.hpp"
 #include "certify/traction_work.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
 namespace {
-
-/// Of sums of some million terms at most.
-constexpr double kRounding = 1e-13;
 
 /// ‖·‖ of what adds o_T to a field of the given squares, by triangles.
 double norm_with(const Eigen::VectorXd& squares, const Eigen::VectorXd& o) {
@@ -87,13 +85,13 @@ QuantityEnclosure::Known QuantityEnclosure::contact_work(const CertifiedSolution
 QuantityEnclosure::Known QuantityEnclosure::work_of_traction(const Discretization& loads,
                                                              const AdmissibleDisplacement& v) const {
   const TractionWork work = signorini::work_of_traction(loads, v, everywhere_);
-  return {work.value, work.slack + kRounding * work.size};
+  return {work.value, work.slack + kRoundingOfSums * work.size};
 }
 
 /// (f, v) + <t, v>, with the sums of v and these loads.
 QuantityEnclosure::Known QuantityEnclosure::work_of_loads(const Discretization& loads,
                                                           const Sums& of_v) const {
-  Known sum{of_v.strain - of_v.energy, of_v.energy_slack + kRounding * std::abs(of_v.strain)};
+  Known sum{of_v.strain - of_v.energy, of_v.energy_slack + kRoundingOfSums * std::abs(of_v.strain)};
   sum += work_of_traction(loads, base_.pair.v);
   return sum;
 }
@@ -115,14 +113,14 @@ double QuantityEnclosure::unbalanced_between(const CertifiedSolution& other, boo
 /// terms add up to: start is a multiple of the base. THEORY.md, Theorem 4.
 QuantityEnclosure::Known QuantityEnclosure::along(const Quantity& quantity, const Term& start,
                                                   const Term& of_stress, const Term& of_displacement,
-                                                  Eigen::VectorXd& shares) const {
+                                                  double& x, Eigen::VectorXd& shares) const {
   const Sums way = sums(base_.discrete, {start, of_stress, of_displacement}),
              end = sums(base_.discrete, {start + 1, of_stress, of_displacement});
   Known sum;
   // −J'(v) (v₂ − v).
   sum += {own_.strain - end.strain + 2 * way.strain - way.energy,
           own_.slack + end.slack + 2 * way.slack + way.energy_slack +
-              kRounding * (own_.strain + end.strain + std::abs(way.energy))};
+              kRoundingOfSums * (own_.strain + end.strain + std::abs(way.energy))};
   sum += start.of_displacement * work_of_traction(base_.discrete, base_.pair.v);
   sum += of_displacement.of_displacement * work_of_traction(base_.discrete, of_displacement.solution.pair.v);
   // The work on v of what the loads differ by.
@@ -139,11 +137,11 @@ QuantityEnclosure::Known QuantityEnclosure::along(const Quantity& quantity, cons
                 of_stress.solution.loads.change_of_pressure * of_other.value;
   // ½ (C σ* − ε(v), C (σ₂ − σ*) − ε(v₂ − v))_E.
   sum += {(end.gap - own_.gap - way.gap) / 4,
-          (end.slack + own_.slack + way.slack) / 4 + kRounding * (end.gap + own_.gap)};
+          (end.slack + own_.slack + way.slack) / 4 + kRoundingOfSums * (end.gap + own_.gap)};
 
   Eigen::VectorXd o = Eigen::VectorXd::Zero(base_.discrete.triangles());
   const double carried = unbalanced_between(of_stress.solution, have_same_loads, o);
-  const double x = norm_with(way.gaps, o) + carried;
+  x = norm_with(way.gaps, o) + carried;
   shares = (own_.gaps.cwiseSqrt() + base_.oscillations).cwiseProduct(way.gaps.cwiseSqrt() + o);
   sum.radius += (base_.unbalanced() * x + std::sqrt(own_.gaps.sum()) * (o.norm() + carried)) / 2;
   // d x + s is at most this for all d² + s ≤ R²/4.
@@ -157,16 +155,19 @@ QuantityEnclosure::Bounds QuantityEnclosure::operator()(const Quantity& quantity
                                                         const CertifiedSolution& plus,
                                                         const CertifiedSolution& minus, double z) const {
   Eigen::VectorXd of_above, of_below;
-  const Known above = along(quantity, {1, -1, base_}, {0, 1, plus}, {-1, 0, minus}, of_above),
-              below = along(quantity, {-1, 1, base_}, {0, -1, minus}, {1, 0, plus}, of_below);
-  return {(below.value - below.radius) / z, (above.value + above.radius) / z, of_above + of_below};
+  double x_above = 0, x_below = 0;
+  const Known above = along(quantity, {1, -1, base_}, {0, 1, plus}, {-1, 0, minus}, x_above, of_above),
+              below = along(quantity, {-1, 1, base_}, {0, -1, minus}, {1, 0, plus}, x_below, of_below);
+  return {(below.value - below.radius) / z, (above.value + above.radius) / z, std::max(x_above, x_below),
+          of_above + of_below};
 }
 
 QuantityEnclosure::Bounds QuantityEnclosure::reflected(const Quantity& quantity,
                                                        const CertifiedSolution& plus, double z) const {
   Eigen::VectorXd shares;
-  const Known both = along(quantity, {-1, -1, base_}, {0, 1, plus}, {1, 0, plus}, shares);
-  return {(both.value - both.radius) / z, (both.value + both.radius) / z, std::move(shares)};
+  double x = 0;
+  const Known both = along(quantity, {-1, -1, base_}, {0, 1, plus}, {1, 0, plus}, x, shares);
+  return {(both.value - both.radius) / z, (both.value + both.radius) / z, x, std::move(shares)};
 }
 
 }  // namespace signorini

@@ -17,6 +17,7 @@ class QuantityEnclosure {
 
   struct Bounds {
     double lower, upper;
+    double way;  ///< x of Theorem 4, the larger one of both ends
     /// By triangles, the products of the errors that the width is made of, up to a factor.
     Eigen::VectorXd shares;
   };
@@ -64,7 +65,7 @@ class QuantityEnclosure {
   Known contact_work(const CertifiedSolution& of_pressure) const;
   double unbalanced_between(const CertifiedSolution& other, bool have_same_loads, Eigen::VectorXd& o) const;
   Known along(const Quantity& quantity, const Term& start, const Term& of_stress, const Term& of_displacement,
-              Eigen::VectorXd& shares) const;
+              double& way, Eigen::VectorXd& shares) const;
 
   const CertifiedSolution& base_;
   const LawOnMesh& laws_;
