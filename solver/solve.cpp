@@ -4,6 +4,7 @@
 
 #include "progress/memory_meter.hpp"
 #include "run/adapt.hpp"
+#include "run/certified.hpp"
 #include "run/condensed_problem.hpp"
 #include "run/data_check.hpp"
 #include "run/paper_form.hpp"
@@ -63,6 +64,7 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     if (keeps) cache->keep(problem.operator_key, used);
     solution = condensed.solve(settings, progress);
   }
+  add_certified(problem, settings, progress, solution);
   if (sweep.empty()) return solution;
   Sweep entries(problem, std::move(used), settings);
   sweep_over(sweep, settings, observer, progress, solution,
@@ -75,10 +77,15 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
 Solution solve_by_method(const Problem& problem, const std::vector<Variation>& sweep,
                          const Settings& settings, Observer& observer, OperatorCache* cache,
                          Progress& progress) {
-  if (problem.mesh.adaptive) return adapt(problem, settings, progress);
+  if (problem.mesh.adaptive) {
+    Solution solution = adapt(problem, settings, progress);
+    add_certified(problem, settings, progress, solution);
+    return solution;
+  }
   if (!std::holds_alternative<PaperUzawa>(settings.method))
     return solve_condensed(problem, sweep, settings, observer, cache, progress);
   Solution solution = solve_paper_form(problem, settings, progress);
+  add_certified(problem, settings, progress, solution);
   Problem varied = problem;
   sweep_over(sweep, settings, observer, progress, solution,
              [&](const Variation& variation, Progress& own, const ShowSolution& show) {

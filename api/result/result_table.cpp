@@ -102,6 +102,33 @@ void put_quantities(PieceWriter& out, const std::vector<EnclosedQuantity>& quant
     for (const std::string& reason : own.unmet) put_line(out, plain(own.name), plain(reason));
 }
 
+/// Of what supports take, the numbers of which something is known.
+void put_certified(PieceWriter& out, const Certified& certified) {
+  std::vector<Row> rows{{"certified", "estimate", "lower", "upper"}};
+  const auto add = [&](const std::string& name, const EnclosedNumber& number) {
+    if (!number.has_lower() && !number.has_upper()) return;
+    const double width = number.upper - number.lower;
+    const auto digits = [&](double own) {
+      return !std::isfinite(own) ? "" : number.is_bounded() ? shown_between(own, width) : shown(own);
+    };
+    rows.push_back({name, digits(number.estimate), digits(number.lower), digits(number.upper)});
+  };
+  add("work of the loads", certified.work);
+  for (const CertifiedSupport& support : certified.supports) {
+    std::string of;
+    for (const std::string& part : support.parts) of += (of.empty() ? "" : " and ") + plain(part);
+    for (std::size_t c = 0; c < support.force.size(); ++c)
+      add(of + (support.force.size() == 1 ? ", force"
+                : c == 0                  ? ", force x"
+                                          : ", force y"),
+          support.force[c]);
+    if (support.moment) add(of + ", moment", *support.moment);
+    if (support.pressure_force) add(of + ", pressure force", *support.pressure_force);
+  }
+  out.put("\n");
+  put_table(out, rows);
+}
+
 void put_levels(PieceWriter& out, const std::vector<Level>& levels) {
   if (levels.empty()) return;
   std::vector<Row> rows{{"level", "triangles", "unknowns", "bound", "relative", "seconds"}};
@@ -154,6 +181,7 @@ bool write_result_table(std::string_view title, const Solution& solution, const 
     put_summary(out, title, solution.summary);
     put_reactions(out, solution.summary.parts);
     put_quantities(out, solution.summary.quantities);
+    if (solution.summary.certified) put_certified(out, *solution.summary.certified);
     put_levels(out, solution.summary.levels);
     put_sweep(out, solution.sweep);
   });

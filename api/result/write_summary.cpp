@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "api/result/result_members.hpp"
 
 namespace signorini::api {
@@ -62,6 +64,63 @@ void write_error_bound(DocumentWriter& out, const ErrorBound& bound) {
   if (!bound.guaranteed) out.key("unmet").texts(bound.unmet);
   out.member("energy_lower", bound.energy_lower).member("energy_upper", bound.energy_upper);
   write_bound_parts(out.key("parts"), bound.parts);
+  out.end_object();
+}
+
+void write_enclosed_number(DocumentWriter& out, const EnclosedNumber& number) {
+  const auto& [value, estimate, lower, upper] = number;
+  out.begin_object().member("value", value).member("estimate", estimate);
+  if (number.has_lower()) out.member("lower", lower);
+  if (number.has_upper()) out.member("upper", upper);
+  out.end_object();
+}
+
+void write_stretches(DocumentWriter& out, const std::vector<CertifiedStretch>& stretches) {
+  out.begin_array();
+  for (const auto& [begin, end, touches, carries_at_most, opens_at_most] : stretches) {
+    out.begin_object();
+    out.key("begin").begin_array().value(begin.x()).value(begin.y()).end_array();
+    out.key("end").begin_array().value(end.x()).value(end.y()).end_array();
+    out.member("touches", touches);
+    if (carries_at_most) out.member("carries_at_most", *carries_at_most);
+    if (opens_at_most) out.member("opens_at_most", *opens_at_most);
+    out.end_object();
+  }
+  out.end_array();
+}
+
+void write_enclosed_reaction(DocumentWriter& out, const CertifiedSupport& support) {
+  if (support.force.size() == 1) {
+    write_enclosed_number(out.key("force"), support.force[0]);
+  } else {
+    out.key("force").begin_array();
+    for (const EnclosedNumber& force : support.force) write_enclosed_number(out, force);
+    out.end_array();
+  }
+  if (support.moment) write_enclosed_number(out.key("moment"), *support.moment);
+  if (support.pressure_force) write_enclosed_number(out.key("pressure_force"), *support.pressure_force);
+  if (!support.stretches.empty()) write_stretches(out.key("stretches"), support.stretches);
+  out.end_object();
+}
+
+void write_certified(DocumentWriter& out, const Certified& certified) {
+  const auto& [energy, work, supports, unmet] = certified;
+  const auto is_sum = [](const CertifiedSupport& support) { return support.parts.size() > 1; };
+  out.begin_object();
+  write_enclosed_number(out.key("energy"), energy);
+  write_enclosed_number(out.key("work"), work);
+  out.key("parts").begin_object();
+  for (const CertifiedSupport& support : supports)
+    if (!is_sum(support)) write_enclosed_reaction(out.key(support.parts[0]).begin_object(), support);
+  out.end_object();
+  if (std::ranges::any_of(supports, is_sum)) {
+    out.key("sums").begin_array();
+    for (const CertifiedSupport& support : supports)
+      if (is_sum(support))
+        write_enclosed_reaction(out.begin_object().key("parts").texts(support.parts), support);
+    out.end_array();
+  }
+  if (!unmet.empty()) out.key("unmet").texts(unmet);
   out.end_object();
 }
 
@@ -139,7 +198,8 @@ void write_quantities(DocumentWriter& out, const std::vector<EnclosedQuantity>& 
 /// All but the quantities, which are a member of the result.
 void write_summary(DocumentWriter& out, const Summary& summary) {
   const auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
-               error_bound, parts, quantities, levels, reused, timings, peak_memory_bytes] = summary;
+               error_bound, parts, quantities, certified, levels, reused, timings, peak_memory_bytes] =
+      summary;
   out.begin_object().member("outcome", name(outcome));
   if (!advice.empty()) out.member("advice", advice);
   if (!notes.empty()) out.key("notes").texts(notes);
@@ -151,6 +211,7 @@ void write_summary(DocumentWriter& out, const Summary& summary) {
   write_reactions(out.key("parts"), parts);
   out.member("reused", reused);
   if (error_bound) write_error_bound(out.key("error_bound"), *error_bound);
+  if (certified) write_certified(out.key("certified"), *certified);
   if (!levels.empty()) write_levels(out.key("levels"), levels);
   write_timings(out.key("timings"), timings);
   out.member("peak_memory_bytes", peak_memory_bytes).end_object();

@@ -101,6 +101,30 @@ void serialize(Archive& archive, Reaction& reaction) {
   archive(part, force, moment);
 }
 
+template <class Archive>
+void serialize(Archive& archive, EnclosedNumber& number) {
+  auto& [value, estimate, lower, upper] = number;
+  archive(value, estimate, lower, upper);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CertifiedStretch& stretch) {
+  auto& [begin, end, touches, carries_at_most, opens_at_most] = stretch;
+  archive(begin, end, touches, carries_at_most, opens_at_most);
+}
+
+template <class Archive>
+void serialize(Archive& archive, CertifiedSupport& support) {
+  auto& [parts, force, moment, pressure_force, stretches] = support;
+  archive(parts, force, moment, pressure_force, stretches);
+}
+
+template <class Archive>
+void serialize(Archive& archive, Certified& certified) {
+  auto& [energy, work, supports, unmet] = certified;
+  archive(energy, work, supports, unmet);
+}
+
 /// The asymmetry came later and ends the lists that hold a bound.
 template <class Archive>
 void serialize(Archive& archive, ErrorBound::Parts& parts) {
@@ -108,9 +132,10 @@ void serialize(Archive& archive, ErrorBound::Parts& parts) {
   archive(constitutive, contact, oscillation, equilibration);
 }
 
+/// Without the work of the loads, which is among the certified numbers.
 template <class Archive>
 void serialize(Archive& archive, ErrorBound& bound) {
-  auto& [value, relative, guaranteed, unmet, energy_lower, energy_upper, parts] = bound;
+  auto& [value, relative, guaranteed, unmet, energy_lower, energy_upper, work, parts] = bound;
   archive(value, relative, guaranteed, unmet, energy_lower, energy_upper, parts);
 }
 
@@ -142,13 +167,14 @@ void serialize(Archive& archive, Level& level) {
 template <class Archive>
 void serialize(Archive& archive, Summary& summary, std::uint32_t version) {
   auto& [outcome, advice, notes, method, iterations, triangles, unknowns, energy, residuals, contact,
-         error_bound, parts, quantities, levels, reused, timings, peak_memory_bytes] = summary;
+         error_bound, parts, quantities, certified, levels, reused, timings, peak_memory_bytes] = summary;
   archive(outcome, advice, method, iterations, triangles, unknowns, energy, residuals, contact, parts,
           timings, peak_memory_bytes, reused, error_bound);
   if (version >= 1) archive(levels, timings.certify);
   if (version >= 2) serialize_asymmetry(archive, error_bound);
   if (version >= 3) archive(notes);
   if (version >= 4) archive(quantities);
+  if (version >= 5) archive(certified);
 }
 
 /// The bound and the quantities came later and end the list of a solution.
@@ -239,5 +265,5 @@ void serialize(Archive& archive, Progress& progress) {
 }  // namespace signorini::server
 
 CEREAL_CLASS_VERSION(signorini::Iteration, 0)
-CEREAL_CLASS_VERSION(signorini::Summary, 4)
+CEREAL_CLASS_VERSION(signorini::Summary, 5)
 CEREAL_CLASS_VERSION(signorini::Solution, 8)

@@ -71,6 +71,17 @@ bool are_lost(const Totals& totals, const Eigen::MatrixXd& stress) {
   return energies < least && !stress.isZero(0);
 }
 
+/// Fixed values and gaps are zero, and known to be.
+bool supports_rest(const Problem& problem) {
+  const auto is_zero = [](const Field& field) { return field.is_constant() && field(Point::Zero()) == 0; };
+  return std::ranges::all_of(problem.boundary, [&](const auto& own) {
+    if (const auto* fixed = std::get_if<Fixed>(&own.second))
+      return std::ranges::all_of(fixed->value.fields(), is_zero);
+    const auto* contact = std::get_if<Contact>(&own.second);
+    return !contact || is_zero(contact->gap);
+  });
+}
+
 /// The data are not what they should be in a point that the discrete problem does not ask.
 Certificate without_bound(const std::vector<Fault>& faults) {
   Certificate certificate;
@@ -105,6 +116,9 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
         std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
   totals.add(carried);
   certificate.bound = bound_from(totals);
+  certificate.bound.work =
+      work_from(totals, certificate.bound, totals.all.stress / 2 - solution.summary.energy,
+                supports_rest(discrete.problem));
   if (are_lost(totals, solution.stress)) certificate.bound.value = std::numeric_limits<double>::infinity();
   certificate.squares = std::move(totals.shares);
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);

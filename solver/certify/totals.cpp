@@ -6,6 +6,7 @@
 
 #include "certify/data/oscillation.hpp"
 #include "certify/pressure/contact_terms.hpp"
+#include "certify/rounding.hpp"
 #include "certify/traction_work.hpp"
 
 namespace signorini {
@@ -101,13 +102,25 @@ ErrorBound bound_from(const Totals& totals) {
                 product + sums.skew + sums.slack);
   const double of_stress = std::sqrt(sums.stress);
   bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
-  // The sums are made of some million terms at most.
-  constexpr double rounding = 1e-13;
   const double unknown =
-      sums.energy_slack + rounding * (std::abs(sums.strain) + std::abs(sums.energy) + totals.work);
+      sums.energy_slack + kRoundingOfSums * (std::abs(sums.strain) + std::abs(sums.energy) + totals.work);
   bound.energy_upper = sums.energy + unknown;
   bound.energy_lower = sums.energy - unknown - p_square / 2;
   return bound;
+}
+
+EnclosedNumber work_from(const Totals& totals, const ErrorBound& bound, double value, bool at_rest) {
+  if (at_rest) return enclosed_number(value, -2 * bound.energy_upper, -2 * bound.energy_lower);
+  const TriangleSums& sums = totals.all;
+  const double stress_on_strain = (sums.stress - sums.skew + 2 * sums.strain - sums.direct_gap) / 2,
+               work_on_v = sums.strain - sums.energy;
+  const double middle = stress_on_strain - work_on_v;
+  const double off = 2 * sums.slack + sums.energy_slack +
+                     kRoundingOfSums * (sums.stress + sums.strain + std::abs(sums.energy) + totals.work) +
+                     bound.value * std::sqrt(2 * sums.strain + sums.slack);
+  const double gap_square = 2 * (bound.energy_upper - bound.energy_lower);
+  return enclosed_number(value, middle - off - 2 * bound.energy_upper - (gap_square + totals.contact) / 4,
+                         middle + off - 2 * bound.energy_lower);
 }
 
 }  // namespace signorini

@@ -48,4 +48,8 @@ double least_over_the_way(double delta_square, double s_square, double s_delta, 
 /// Each sum counts with its slack in the direction that makes the bound larger.
 ErrorBound bound_from(const Totals& totals);
 
+/// Encloses the work of the loads, which for the discrete solution is the value: THEORY.md, section 9.
+/// `at_rest`: fixed values and gaps are zero.
+EnclosedNumber work_from(const Totals& totals, const ErrorBound& bound, double value, bool at_rest);
+
 }  // namespace signorini

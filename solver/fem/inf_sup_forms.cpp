@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "fem/element.hpp"
+#include "fem/lagrange.hpp"
 #include "fem/trace_space.hpp"
 
 namespace signorini {
@@ -177,9 +178,7 @@ class FormBuilder {
   /// ‖w‖² + ‖∇w‖².
   void add_extension(int t) {
     const AffineMap map(mesh_.corners(t));
-    Eigen::Matrix<double, 2, 3> reference;
-    reference << -1, 1, 0, -1, 0, 1;
-    const Eigen::Matrix<double, 2, 3> gradients = map.jacobian.inverse().transpose() * reference;
+    const Eigen::Matrix<double, 2, 3> gradients = hat_gradients(map);
     const Eigen::Matrix3d form = mass(t) + map.determinant / 2 * gradients.transpose() * gradients;
     for (int y = 0; y < 3; ++y)
       for (int z = 0; z < 3; ++z)

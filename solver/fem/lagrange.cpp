@@ -1,5 +1,7 @@
 #include "fem/lagrange.hpp"
 
+#include <Eigen/LU>
+
 #include "fem/quadrature.hpp"
 
 namespace signorini {
@@ -22,6 +24,12 @@ LocalVector triangle_basis(int order, const Point& reference) {
   else
     values << 1 - reference.x() - reference.y(), reference.x(), reference.y();
   return values;
+}
+
+Eigen::Matrix<double, 2, 3> hat_gradients(const AffineMap& map) {
+  Eigen::Matrix<double, 2, 3> reference;
+  reference << -1, 1, 0, -1, 0, 1;
+  return map.jacobian.inverse().transpose() * reference;
 }
 
 Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference) {

@@ -14,6 +14,9 @@ LocalVector edge_basis(int order, double s);
 /// corner and 0 at the others.
 LocalVector triangle_basis(int order, const Point& reference);
 
+/// The gradients of the functions of P1 on a triangle, by columns.
+Eigen::Matrix<double, 2, 3> hat_gradients(const AffineMap& map);
+
 /// The six functions of P2 on the reference triangle: 1 at a corner, or in the middle of edge 0, 1, 2.
 Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
 

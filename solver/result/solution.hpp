@@ -91,6 +91,51 @@ struct EdgePressure {
   }
 };
 
+/// A number of the discrete solution with an interval that holds that of the solution.
+struct EnclosedNumber {
+  double value = 0;     ///< of the discrete solution
+  double estimate = 0;  ///< the value, or the middle of the interval if that is outside
+  /// Infinite where nothing finite is known.
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+
+  bool has_lower() const { return std::isfinite(lower); }
+  bool has_upper() const { return std::isfinite(upper); }
+  bool is_bounded() const { return has_lower() && has_upper(); }
+};
+
+/// The value in its interval, with the estimate that follows from both.
+inline EnclosedNumber enclosed_number(double value, double lower, double upper) {
+  const bool is_inside = lower <= value && value <= upper, is_bounded = std::isfinite(upper - lower);
+  const double nearest = value < lower ? lower : upper;
+  return {value, is_inside ? value : is_bounded ? (lower + upper) / 2 : nearest, lower, upper};
+}
+
+/// What is known of a stretch of a contact part. Of single points nothing is: an elastic body may lift off in
+/// any.
+struct CertifiedStretch {
+  Point begin, end;
+  bool touches = false;                   ///< somewhere within
+  std::optional<double> carries_at_most;  ///< ∫ p over it
+  std::optional<double> opens_at_most;    ///< ∫ λ over it
+};
+
+/// What one support takes, or several together, as a Reaction; of a contact part the force of its pressure
+/// too. A number is there if something is known of it.
+struct CertifiedSupport {
+  std::vector<std::string> parts;
+  std::vector<EnclosedNumber> force;  ///< by components
+  std::optional<EnclosedNumber> moment, pressure_force;
+  std::vector<CertifiedStretch> stretches;  ///< of a contact part, one after the other
+};
+
+/// What the certificate knows of numbers that every answer has, all of it guaranteed.
+struct Certified {
+  EnclosedNumber energy;
+  EnclosedNumber work;  ///< of the loads, (f, u) + <t, u>
+  std::vector<CertifiedSupport> supports;
+  std::vector<std::string> unmet;  ///< why some of it is not bounded
+};
+
 /// A bound of the error in the energy norm, computed from the solution alone; see certify/certificate.hpp.
 /// Its parts are norms of the same unit, √(energy per unit depth).
 struct ErrorBound {
@@ -108,6 +153,7 @@ struct ErrorBound {
   std::vector<std::string> unmet;  ///< why it is not guaranteed
   double energy_lower = 0;         ///< ≤ J(u)
   double energy_upper = 0;         ///< J(v) ≥ J(u)
+  EnclosedNumber work;             ///< of the loads, (f, u) + <t, u>
   Parts parts;
 };
 
@@ -156,6 +202,7 @@ struct Summary {
   std::optional<ErrorBound> error_bound;  ///< none if nothing finite is known; the notes say why
   std::vector<Reaction> parts;
   std::vector<EnclosedQuantity> quantities;  ///< in the order of the problem
+  std::optional<Certified> certified;        ///< if the bound is guaranteed
   std::vector<Level> levels;                 ///< of a mesh that refined itself
   bool reused = false;                       ///< the operator was there from an earlier solve
   Timings timings;

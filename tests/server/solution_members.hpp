@@ -34,13 +34,14 @@ auto members(T& all) {
   return std::tie(a, b, c);
 }
 template <typename T>
-requires Some<T, Unknowns> || Some<T, EdgePressure>
+requires Some<T, Unknowns> || Some<T, EdgePressure> || Some<T, EnclosedNumber> || Some<T, Certified>
 auto members(T& all) {
   auto& [a, b, c, d] = all;
   return std::tie(a, b, c, d);
 }
 template <typename T>
-requires Some<T, ErrorBound::Parts> || Some<T, TrueErrors> || Some<T, LevelFields>
+requires Some<T, ErrorBound::Parts> || Some<T, TrueErrors> || Some<T, LevelFields> ||
+    Some<T, CertifiedSupport> || Some<T, CertifiedStretch>
 auto members(T& all) {
   auto& [a, b, c, d, e] = all;
   return std::tie(a, b, c, d, e);
@@ -52,7 +53,7 @@ auto members(T& all) {
   return std::tie(a, b, c, d, e, f);
 }
 template <typename T>
-requires Some<T, ErrorBound> || Some<T, Level> || Some<T, ContactPart>
+requires Some<T, Level> || Some<T, ContactPart>
 auto members(T& all) {
   auto& [a, b, c, d, e, f, g] = all;
   return std::tie(a, b, c, d, e, f, g);
@@ -62,6 +63,12 @@ requires Some<T, Iteration> || Some<T, Mesh>
 auto members(T& all) {
   auto& [a, b, c, d, e, f, g, h, i] = all;
   return std::tie(a, b, c, d, e, f, g, h, i);
+}
+/// Without the work of the loads, which is stored with what else is certified.
+template <Some<ErrorBound> T>
+auto members(T& all) {
+  auto& [a, b, c, d, e, f, work, g] = all;
+  return std::tie(a, b, c, d, e, f, g);
 }
 /// Without the shares of triangles, which are not stored.
 template <Some<EnclosedQuantity> T>
@@ -81,8 +88,8 @@ auto members(T& all) {
 }
 template <Some<Summary> T>
 auto members(T& all) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = all;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = all;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
 }
 template <Some<Solution> T>
 auto members(T& all) {

@@ -188,7 +188,7 @@ TEST_P(Store, AKeyGoesWithItsJob) {
 }
 
 TEST_P(Store, DropsTheOldestResultsButNeverTheLast) {
-  JobStore& store = open(9, 25'000);
+  JobStore& store = open(9, 26'000);
   for (const char* id : {"a", "b", "c"}) {
     store.add(new_job(id));
     store.finish(*store.claim(), success(10'000));
@@ -212,7 +212,7 @@ TEST_P(Store, KeepsJobsThatHaveNotEnded) {
 }
 
 TEST_P(Store, RemovingAResultMakesRoom) {
-  JobStore& store = open(9, 25'000);
+  JobStore& store = open(9, 26'000);
   for (const char* id : {"a", "b"}) {
     store.add(new_job(id));
     store.finish(*store.claim(), success(10'000));

@@ -66,4 +66,9 @@ def _read_members(kind: Any, value: Mapping[str, Any]) -> Any:
 def _read_either(kinds: list[Any], value: Any) -> Any:
     if len(kinds) == 1:
         return read(kinds[0], value)
-    return value if isinstance(value, (int, float, str)) else tuple(float(number) for number in value)
+    if isinstance(value, (int, float, str)):
+        return value
+    if isinstance(value, Mapping):
+        return read(next(kind for kind in kinds if dataclasses.is_dataclass(kind)), value)
+    element = next(typing.get_args(kind)[0] for kind in kinds if typing.get_origin(kind) is tuple)
+    return tuple(float(each) if element is float else read(element, each) for each in value)

@@ -85,6 +85,49 @@ class EnclosedQuantity:
 
 
 @dataclass(frozen=True)
+class EnclosedNumber:
+    """A number with an interval in which it lies."""
+
+    value: float  #: of the discrete solution
+    estimate: float  #: `value`, or the middle of the interval if that is outside
+    lower: float | None  #: none if nothing bounds it from below
+    upper: float | None  #: none if nothing bounds it from above
+
+
+@dataclass(frozen=True)
+class CertifiedStretch:
+    """What is known of a stretch of a contact part."""
+
+    begin: tuple[float, ...]  #: a point
+    end: tuple[float, ...]
+    touches: bool  #: somewhere within
+    carries_at_most: float | None  #: ∫ p ds over it
+    opens_at_most: float | None  #: ∫ λ ds over it, λ the clearance
+
+
+@dataclass(frozen=True)
+class CertifiedSupport:
+    """What a support takes, as in `Reaction`; several together in `Certified.sums`."""
+
+    force: EnclosedNumber | tuple[EnclosedNumber, EnclosedNumber]  #: of a membrane one
+    moment: EnclosedNumber | None  #: about the origin
+    pressure_force: EnclosedNumber | None  #: ∫ p ds, of a contact part
+    stretches: tuple[CertifiedStretch, ...] | None  #: of a contact part, one after the other
+    parts: tuple[str, ...] | None  #: in sums
+
+
+@dataclass(frozen=True)
+class Certified:
+    """Numbers of every answer in guaranteed intervals."""
+
+    energy: EnclosedNumber
+    work: EnclosedNumber  #: of the loads
+    parts: dict[str, CertifiedSupport]  #: of parts that are fixed, on rollers or in contact
+    sums: tuple[CertifiedSupport, ...] | None  #: of parts that meet in a point whose force nothing shares out
+    unmet: tuple[str, ...] | None  #: why some of it is not bounded
+
+
+@dataclass(frozen=True)
 class Levels:
     """The meshes of an adaptive solve, columns by level."""
 
@@ -126,6 +169,7 @@ class Summary:
     parts: dict[str, Reaction]  #: by part of the boundary
     reused: bool  #: whether the factor of an earlier solve was used again
     error_bound: ErrorBound | None
+    certified: Certified | None  #: if the bound is guaranteed
     levels: Levels | None  #: of an adaptive mesh
     timings: Timings
     peak_memory_bytes: int

@@ -1,0 +1,57 @@
+#include "run/certified.hpp"
+
+#include "certify/reactions/reactions.hpp"
+
+namespace signorini {
+namespace {
+
+/// Each number of a support takes a solve: what so many take is little beside the solution.
+constexpr std::size_t kSupports = 16;
+/// What the energies of extensions may be too large by, where the stiffness varies.
+constexpr double kOfEnergy = 1e-3;
+
+void add_supports(const Problem& problem, const Settings& settings, Progress& progress,
+                  const Solution& solution, Certified& certified) {
+  const Discretization discrete(problem, solution.mesh, &progress);
+  const LawOnMesh laws(problem.material, solution.mesh, kOfEnergy, progress);
+  const Extensions extensions(discrete, laws, settings.factorization, progress);
+  if (extensions.supports().size() > kSupports) {
+    certified.unmet.push_back("what supports take is bounded for up to " + std::to_string(kSupports) +
+                              " of them: ask for quantities");
+    return;
+  }
+  certified.supports = Reactions(discrete, solution, extensions, progress).all(certified.unmet);
+}
+
+}  // namespace
+
+void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution) {
+  Summary& summary = solution.summary;
+  const std::optional<ErrorBound>& bound = summary.error_bound;
+  if (!bound || !bound->guaranteed || summary.outcome == Outcome::cancelled) return;
+  const double begin = progress.seconds();
+  Certified certified;
+  certified.energy = enclosed_number(summary.energy, bound->energy_lower, bound->energy_upper);
+  certified.work = bound->work;
+  try {
+    progress.enter(Phase::certify);
+    add_supports(problem, settings, progress, solution, certified);
+  } catch (const TimeUp&) {
+    certified.unmet.push_back(
+        "the time limit was reached before it was known what supports take: raise solver.time_limit");
+  } catch (const Cancelled& cancelled) {
+    // A mesh that refines itself keeps what it has.
+    if (!problem.mesh.adaptive) throw;
+    summary.outcome = Outcome::cancelled;
+    summary.advice = cancelled.what();
+    return;
+  } catch (const NotPositiveDefinite& failure) {
+    certified.unmet.push_back(std::string("it is not known what supports take: ") + failure.what());
+  }
+  summary.certified = std::move(certified);
+  const double seconds = progress.seconds() - begin;
+  summary.timings.certify += seconds;
+  summary.timings.total += seconds;
+}
+
+}  // namespace signorini
