@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 
 #include "fem/discretization.hpp"
 
@@ -28,16 +30,19 @@ class PerShape {
   template <typename Make>
   Value& operator()(int triangle, const Make& make) {
     const Eigen::Matrix2d jacobian = AffineMap(discrete_.mesh.corners(triangle)).jacobian;
-    std::unique_ptr<Remembered>& found = remembered_[place(jacobian)];
-    const bool known =
-        found && discrete_.element.has_constant_material() && is_same(found->jacobian, jacobian);
-    if (!known) {
+    auto& alike = remembered_[place(jacobian)];
+    auto known = std::ranges::find_if(alike, [&](const std::unique_ptr<Remembered>& one) {
+      return one && discrete_.element.has_constant_material() && is_same(one->jacobian, jacobian);
+    });
+    if (known == alike.end()) {
+      --known;
       if constexpr (std::invocable<Make>)
-        found.reset(new Remembered{jacobian, make()});
+        known->reset(new Remembered{jacobian, make()});
       else
-        found.reset(new Remembered{jacobian, make(discrete_.element.matrices(discrete_.mesh, triangle))});
+        known->reset(new Remembered{jacobian, make(discrete_.element.matrices(discrete_.mesh, triangle))});
     }
-    return found->value;
+    std::rotate(alike.begin(), known, known + 1);
+    return alike.front()->value;
   }
 
  private:
@@ -45,7 +50,9 @@ class PerShape {
     Eigen::Matrix2d jacobian;
     Value value;
   };
-  static constexpr int kBits = 6;
+  static constexpr int kBits = 4;
+  /// Shapes that come in turn, four in a crossed square, may have one place: the last ones are kept there.
+  static constexpr int kAlike = 4;
   /// What a difference of coordinates is exact to on a few thousand divisions.
   static constexpr double kRounding = 1e-12;
 
@@ -57,11 +64,12 @@ class PerShape {
     return (sizes(one - other) <= kRounding * sizes(one)).all();
   }
 
-  /// A power of two that makes whole numbers of some digits of the first triangle's coordinates.
+  /// What makes whole numbers of some digits of the first triangle's coordinates. By the golden ratio simple
+  /// fractions do not lie halfway between two numbers, where rounding would decide.
   static double digits_per_length(const Mesh& mesh) {
     constexpr int digits = 24;
     const AffineMap first(mesh.corners(0));
-    return std::scalbn(1., digits - std::ilogb(first.jacobian.cwiseAbs().maxCoeff()));
+    return std::scalbn(std::numbers::phi, digits - std::ilogb(first.jacobian.cwiseAbs().maxCoeff()));
   }
 
   /// Mixes the leading digits of the numbers (Knuth's multiplicative hashing).
@@ -77,7 +85,7 @@ class PerShape {
 
   const Discretization& discrete_;
   const double digits_per_length_;
-  std::array<std::unique_ptr<Remembered>, 1 << kBits> remembered_;
+  std::array<std::array<std::unique_ptr<Remembered>, kAlike>, 1 << kBits> remembered_;
 };
 
 }  // namespace signorini

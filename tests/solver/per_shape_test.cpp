@@ -29,5 +29,15 @@ TEST(PerShape, TellsShapesApartButForRounding) {
   EXPECT_EQ(shapes_of(mesh), before + 4);
 }
 
+/// Some of them have one place among those that are remembered.
+TEST(PerShape, RemembersThoseThatComeInTurn) {
+  for (const Pattern pattern : {Pattern::right, Pattern::crossed})
+    for (int n = 2; n < 100; ++n) {
+      EXPECT_LE(shapes_of(rectangle_mesh({{0, 0}, {1, 9. / n}}, {9, n}, pattern)), 4) << n;
+      EXPECT_LE(shapes_of(rectangle_mesh({{0.1, 0}, {1, 1.7}}, {9, n}, pattern)), 4) << n;
+    }
+  EXPECT_EQ(shapes_of(rectangle_mesh({{0, 0}, {9. / 333, 1}}, {9, 333}, Pattern::right)), 2);
+}
+
 }  // namespace
 }  // namespace signorini::per_shape_test
