@@ -64,6 +64,7 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     if (keeps) cache->keep(problem.operator_key, used);
     solution = condensed.solve(settings, progress);
   }
+  if (sweep.empty()) used.reset();  // unless the cache has it, too
   add_certified(problem, settings, progress, solution);
   if (sweep.empty()) return solution;
   Sweep entries(problem, std::move(used), settings);

@@ -180,11 +180,18 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
                             sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces)) +
                             tables(problem, spaces);
+  // Extensions have the components in a point of a cut, where traces and rotations have more on a side.
+  const double on_side = spaces.traces_per_edge() + (spaces.rotations() ? 1 : 0), d = spaces.components;
+  const double of_factor = d * d / (on_side * on_side) * while_factoring(made, spaces, sizes, by);
+  const double enclosing = memory_of_solution(spaces, sizes.triangles) + of_factor +
+                           d * d / (on_side * on_side) * made.panels +
+                           sizes.triangles * (3 * d * sizeof(int) + sizeof(int) + sizeof(Point) +
+                                              3 * kNumber * d + of_own_shape(problem) * 9 * d * d * kNumber);
   // A mesh that refines itself keeps the solution of the level before, and what is seen of all.
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
                                                     memory_of_levels(spaces, sizes.triangles)
                                               : 0;
-  return kSlack * (kept + std::max(factoring, certifying) + before);
+  return kSlack * (kept + std::max({factoring, certifying, enclosing}) + before);
 }
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
