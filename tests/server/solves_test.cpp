@@ -118,7 +118,8 @@ TEST_F(Solves, AreCancelledWhileRunning) {
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 202);
   const json document = wait_for(id, "cancelled");
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  // In a fleet it takes up to a second until another service hears of it.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
   EXPECT_TRUE(document.at("finished_at").is_string());
   EXPECT_EQ(json::parse(get("/v1/solves/" + id + "/history")->body).at("status"), "cancelled");
 }
