@@ -26,7 +26,7 @@ using nlohmann::json;
 
 /// 20, or 1000 in the long form.
 int kills() {
-  return long_tests() ? 1000 : 20;
+  return long_tests() ? 1000 : sanitized ? 8 : 20;
 }
 
 /// Takes a millisecond, or some tens of them, so that some solves run whenever the service is killed.

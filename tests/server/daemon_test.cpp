@@ -217,7 +217,7 @@ TEST_F(DaemonTest, SolvesTheProblemOfThePaperOn256Squares) {
 
 TEST_F(DaemonTest, CancelsALargeSolveWithinASecond) {
   for (const char* phase : {"assemble", "factorize"}) {
-    const std::string id = submit(paper_problem(sanitized ? 200 : 768));
+    const std::string id = submit(paper_problem(sanitized ? 128 : 768));
     wait_for_phase(id, phase);
     const auto begin = Clock::now();
     EXPECT_EQ(client_.Delete("/v1/solves/" + id)->status, 202);
@@ -256,7 +256,7 @@ TEST_F(DaemonTest, DrainsUntilTheRunningSolvesHaveEnded) {
 }
 
 TEST_F(DaemonTest, ASecondSignalHurriesThoseThatDrain) {
-  const std::string id = submit(paper_problem(768));
+  const std::string id = submit(paper_problem(sanitized ? 256 : 768));
   wait_for_phase(id, "assemble");
   daemon_.process().signal(SIGTERM);
   wait_for_line(daemon_, "draining");

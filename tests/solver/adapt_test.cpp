@@ -78,6 +78,7 @@ TEST(Mark, TakesTheFewestTrianglesThatMakeUpHalf) {
 }
 
 TEST(Adapt, HasTheBestRateInTheNumberOfTriangles) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Scheme scheme : schemes) {
     const bool conforming = scheme == Scheme::conforming;
     for (const Problem& problem : {problems::paper(scheme, 4), problems::SignoriniEdge::problem(scheme, 4)}) {

@@ -73,7 +73,9 @@ TEST_P(SmoothBody, IsBoundedWhateverPoissonsRatio) {
 
 INSTANTIATE_TEST_SUITE_P(Poisson, SmoothBody,
                          testing::Combine(testing::Values(Scheme::conforming, Scheme::nonconforming),
-                                          testing::Values(0.1, 0.3, 0.49, 0.4999)));
+                                          testing::ValuesIn(sanitized ? std::vector{0.4999}
+                                                                      : std::vector{0.1, 0.3, 0.49, 0.4999})));
+
 /// ‖σ − σ_f‖_C of two solutions, the finer one on the mesh refined so many times.
 double distance(const Problem& problem, const Solution& coarse, const Solution& fine, int refinements) {
   const RaviartThomas &element = spaces_of(coarse.scheme, 2).row, &finer = spaces_of(fine.scheme, 2).row;
@@ -138,7 +140,8 @@ TEST_P(ContactEnds, WithAJumpThroughTheBodyAreBoundedCloseToTheError) {
   const auto& [scheme, poisson] = GetParam();
   const bool along_a_circle = poisson == 0.3;
   Problem problem;
-  problem.mesh.fineness = Divisions{32, 32};
+  const int n = sanitized ? 8 : 32;
+  problem.mesh.fineness = Divisions{n, n};
   problem.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
   problem.body = VectorField(
       Field(0), problems::formula(along_a_circle ? "(x - 0.45)^2 + (y - 0.55)^2 < 0.083 ? -1 : 0.5"
@@ -155,12 +158,13 @@ TEST_P(ContactEnds, WithAJumpThroughTheBodyAreBoundedCloseToTheError) {
   const double left = left_side(distance(problem, coarse, fine, 1), coarse, fine, energy);
   EXPECT_TRUE(bound.guaranteed);
   // Without a jump it is 1.8 for ν = 0 in the conforming scheme: the corners of the fixed side.
-  EXPECT_LE(bound.value, 1.7 * left);
+  EXPECT_LE(bound.value, (sanitized ? 2.5 : 1.7) * left);
 }
 
 INSTANTIATE_TEST_SUITE_P(Poisson, ContactEnds,
                          testing::Combine(testing::Values(Scheme::conforming, Scheme::nonconforming),
-                                          testing::Values(0., 0.1, 0.3, 0.49, 0.4999)));
+                                          testing::ValuesIn(sanitized ? std::vector{0.3, 0.49}
+                                                                      : std::vector{0., 0.1, 0.3, 0.49, 0.4999})));
 
 /// Refinement of the traces brings their digits back; the stress that follows has to keep its balance.
 TEST(Equilibrium, IsKeptWhereTheLawIsExtreme) {
@@ -232,6 +236,7 @@ TEST(ContactThatBends, IsSolvedAsWellAsContactThatDoesNot) {
 }
 
 TEST(SmoothBody, TheBoundFallsAtTheRateOfTheScheme) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const auto& [scheme, order] : {std::pair(Scheme::conforming, 1.85), {Scheme::nonconforming, 0.95}}) {
     std::vector<double> bounds;
     for (const int n : {16, 32, 64}) bounds.push_back(Smooth(scheme, 0.4999, n).bound.value);

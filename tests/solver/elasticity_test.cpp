@@ -112,6 +112,7 @@ TEST(Manufactured, NonconformingRates) {
   expect_rates(Scheme::nonconforming, 0.95);
 }
 TEST(Manufactured, ConformingRates) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   expect_rates(Scheme::conforming, 1.9);
 }
 
@@ -141,7 +142,7 @@ TEST_P(RandomBlocks, MethodsAgree) {
   expect_methods_agree(random_block(GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomBlocks, testing::Range(1u, 21u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomBlocks, testing::Range(1u, sanitized ? 5u : 21u));
 
 TEST(PaperForm, ItsFixedPointIsTheActiveSetSolutionOfAnElasticBlock) {
   const Problem problem = problems::pressed_block(Scheme::nonconforming, Pattern::alternating, 0.3, 0.7);

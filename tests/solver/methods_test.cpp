@@ -87,6 +87,7 @@ TEST(MprgpMethod, FindsTheKnownSolutionFromEveryStart) {
 }
 
 TEST(MprgpMethod, ItsCountGrowsMoreSlowlyThanTheRootOfTheDivisions) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     const auto count = [&](int n) {
       return solve(problems::paper(scheme, n), {Mprgp{1e-8}, {}}).summary.iterations;
@@ -117,7 +118,7 @@ TEST_P(RandomProblems, ActiveSetLeavesOnlyRounding) {
   EXPECT_LT(residuals.complementarity, 1e-11);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomProblems, testing::Range(1u, 11u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomProblems, testing::Range(1u, sanitized ? 4u : 11u));
 
 /// The random problems are of use only if contact is open in one place and closed in another.
 TEST(RandomProblemsThemselves, AreNotTrivial) {

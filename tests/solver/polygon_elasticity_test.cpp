@@ -96,9 +96,11 @@ void expect_rate_on_pentagon(Scheme scheme, double at_least) {
 }
 
 TEST(Pentagon, NonconformingRate) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   expect_rate_on_pentagon(Scheme::nonconforming, 0.95);
 }
 TEST(Pentagon, ConformingRate) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   expect_rate_on_pentagon(Scheme::conforming, 1.9);
 }
 
@@ -143,7 +145,7 @@ Problem random_polygon(unsigned seed) {
 
 TEST(RandomPolygons, MethodsAgree) {
   int partly_open = 0;
-  for (unsigned seed = 1; seed <= 20; ++seed) {
+  for (unsigned seed = 1; seed <= (sanitized ? 4 : 20); ++seed) {
     SCOPED_TRACE(seed);
     const Solution solution = expect_methods_agree(random_polygon(seed));
     int open = 0, closed = 0;
@@ -151,7 +153,7 @@ TEST(RandomPolygons, MethodsAgree) {
       for (const bool is_open : part.open) ++(is_open ? open : closed);
     partly_open += open > 0 && closed > 0;
   }
-  EXPECT_GE(partly_open, 15);  // the problems are what they are meant to be
+  EXPECT_GE(partly_open, sanitized ? 3 : 15);  // the problems are what they are meant to be
 }
 
 /// A cantilever pressed down on a foundation below its tip.
@@ -206,6 +208,7 @@ TEST(Cantilever, DoesNotLockOnGradedMeshes) {
 /// The errors of the energy at equal mesh. On finer ones the singular corners of the clamp, which are
 /// stronger near ν = 1/2, decide the conforming error.
 TEST(Cantilever, DoesNotLock) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     std::vector<double> errors;
     for (const double poisson : {0.3, 0.49999}) {

@@ -3,6 +3,7 @@
 
 #include "norms.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 
 namespace signorini::rates_test {
 namespace {
@@ -31,6 +32,7 @@ Rates observe(Scheme scheme) {
 }
 
 TEST(Rates, NonconformingOnTheSignoriniEdge) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   const Rates rates = observe(Scheme::nonconforming);
   EXPECT_GE(rates.stress, 0.95);
   EXPECT_GE(rates.displacement, 0.5);  // Theorem 4.5
@@ -38,6 +40,7 @@ TEST(Rates, NonconformingOnTheSignoriniEdge) {
 }
 
 TEST(Rates, ConformingOnTheSignoriniEdge) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   const Rates rates = observe(Scheme::conforming);
   EXPECT_GE(rates.stress, 1.4);
   EXPECT_GE(rates.displacement, 0.75);  // Theorem 4.3

@@ -5,6 +5,7 @@
 
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
+#include "problems/sanitized.hpp"
 #include "result/true_errors.hpp"
 
 namespace signorini::study_test {
@@ -45,6 +46,7 @@ Exact exact_edge() {
 
 /// What Theorems 4.3 and 4.5 promise, 3/4 and 1/2, holds of the bound on the errors; more is seen.
 TEST(Study, ReproducesTheOrdersOfTheTheoremsOnThePapersProblem) {
+  if (sanitized) GTEST_SKIP() << "smaller meshes take the same ways";
   Study study{both, squares({{4, 4}, {8, 8}, {16, 16}, {32, 32}, {64, 64}, {128, 128}}), {}};
   study.exact.energy = -0.914792950798;
   const std::vector<StudyRow> rows = run(problems::paper(Scheme::conforming, 4), study);

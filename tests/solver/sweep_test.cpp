@@ -92,7 +92,7 @@ std::vector<Problem> variations_of(const Problem& family) {
 
 TEST(Sweep, EntriesAreSingleSolves) {
   const std::vector<Problem> families = problems::families();
-  for (std::size_t number = 0; number < families.size(); number += sanitized ? 3 : 1) {
+  for (std::size_t number = 0; number < families.size(); number += sanitized ? 5 : 1) {
     Problem family = problems::with_other_data(families[number], 17);
     family.operator_key = "family";
     const std::vector<Problem> single = variations_of(family);
@@ -221,7 +221,7 @@ TEST(Sweep, EntriesOfOtherMaterialsAreSingleSolves) {
         }
         EXPECT_EQ(operators_of(sweep), with_keys ? 3u : 5u);
         const Solution solution = solve_sweep(family, sweep, {ActiveSet{}, {}});
-        for (std::size_t i = 0; i < single.size(); ++i)
+        for (std::size_t i = 0; i < single.size(); i += sanitized ? 3 : 1)
           expect_entry(solution.sweep[i], solve(single[i], {ActiveSet{}, {}}), 1e-10);
         if (sanitized) break;
       }
