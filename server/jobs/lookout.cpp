@@ -18,12 +18,13 @@ constexpr auto between_hints = 50ms;   // of one process
 Lookout::Lookout(Fleet& fleet, LookoutEars ears)
     : fleet_(fleet),
       ears_(std::move(ears)),
-      listening_([this](const std::stop_token& stop) { listen(stop); }),
-      telling_([this](const std::stop_token& stop) { tell(stop); }) {}
+      telling_([this](const std::stop_token& stop) { tell(stop); }),
+      listening_([this](const std::stop_token& stop) { listen(stop); }) {}
 
+/// What is told reaches the one that listens here, too, which sleeps until then.
 Lookout::~Lookout() {
   listening_.request_stop();
-  telling_.request_stop();
+  hint();
 }
 
 void Lookout::hint() {

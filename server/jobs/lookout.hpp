@@ -59,7 +59,7 @@ class Lookout {
   std::condition_variable_any wake_;
   bool has_news_ = false;
 
-  std::jthread listening_, telling_;
+  std::jthread telling_, listening_;  // the one that ends first is woken by the other
 };
 
 }  // namespace signorini::server

@@ -69,7 +69,7 @@ std::string PostgresServer::url(const std::string& database) const {
 }
 
 std::string PostgresServer::new_database(const std::string& name) {
-  postgres::Connection(url("postgres"), 10s).script("CREATE DATABASE " + name);
+  postgres::Connection(url("postgres"), 10s).script("CREATE DATABASE " + name + " STRATEGY file_copy");
   return url(name);
 }
 

@@ -430,7 +430,8 @@ TEST_P(RandomQuantities, OfRollingBodiesAreEnclosed) {
   expect_enclosed(random_rolling_body(GetParam()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomQuantities, testing::Range(0u, sanitized ? 3u : 8u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomQuantities,
+                         sanitized ? testing::Range(1u, 2u) : testing::Range(0u, 8u));
 
 }  // namespace
 }  // namespace signorini::quantity_test
