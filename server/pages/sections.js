@@ -154,7 +154,7 @@ export function sweepSection(result, view, solve) {
   const name = (entry, i) => entry.title || `entry ${i + 1}`;
   const of = (read) => sweep.map((entry) => (entry.summary ? read(entry.summary) : NaN));
   const choice = element("select", { ariaLabel: "Entry" }, sweep.map((entry, i) => element("option", { value: i + 1 }, `${i + 1}: ${name(entry, i)}`)));
-  choice.addEventListener("change", () => view.set({ entry: Number(choice.value) }));
+  choice.onchange = () => view.set({ entry: Number(choice.value) });
   const show = () => {
     const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
     choice.value = own + 1;

@@ -44,11 +44,11 @@ function showHead(solve) {
 /// A link that shows the token if there is one.
 function fileLink(href, name) {
   const link = element("a", { href, className: "small" }, name);
-  link.addEventListener("click", async (event) => {
+  link.onclick = async (event) => {
     if (!sessionStorage.getItem("token")) return;
     event.preventDefault();
     save(href.split("/").slice(-2).join("-"), await (await ask(href)).blob());
-  });
+  };
   return link;
 }
 
