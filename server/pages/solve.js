@@ -104,7 +104,7 @@ function showPictures(results, solves, steps) {
   if (figures.length > 1) link(figures);
   picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id), steps),
     element("div", { className: figures.length > 1 ? "two" : "one" }, figures.map((figure, i) => (figures.length > 1 ? element("div", {}, element("h2", {}, i ? element("a", { href: solves[i].links.self }, figure.name) : figure.name), figure.whole) : figure.whole))),
-    element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? ". The foundation is dashed." : ", f for flat."));
+    element("p", { className: "quiet small help" }, figures[0].shape.body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].shape.body ? ". The foundation is dashed." : ", f for flat."));
   return figures;
 }
 
