@@ -6,7 +6,7 @@ import { button, bytes, counted, element, isOpen, progressInWords, save, seconds
 import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
 import { History } from "/pages/history.js";
-import { boundSection, contactSection, figuresSection, levelsSection, quantitiesSection, studySection, sweepSection } from "/pages/sections.js";
+import { boundSection, certifiedSection, contactSection, figuresSection, levelsSection, quantitiesSection, studySection, sweepSection } from "/pages/sections.js";
 import { ask, follow, getBytes, getJson, isAway, persist, pose } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
@@ -73,7 +73,7 @@ async function showResult(solve) {
   const { summary } = solve, steps = summary.levels && stepsOf(summary), isAlone = results.length === 1;
   const [figure] = showPictures(results, solves, isAlone ? steps : null);
   if (steps && isAlone) stepThrough(figure, result, steps, solve.links);
-  sections.replaceChildren(...[boundSection(summary), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
+  sections.replaceChildren(...[boundSection(summary), summary.certified && certifiedSection(summary.certified), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
     result.study && studySection(result.study), result.sweep && sweepSection(result, view, (problem) => pose(JSON.stringify(problem)).catch(failed)), figuresSection(summary)].filter(Boolean));
 }
 
