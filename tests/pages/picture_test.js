@@ -281,6 +281,30 @@ test("The foundation lies beyond an elastic body by its gap, as many times too f
   wellDone();
 });
 
+test("The foundation is that of the service's own picture, also where its direction turns", async () => {
+  const problem = {
+    model: "elasticity", domain: { type: "polygon", vertices: [[0, 1], [0, 0.5], [1, 0], [2, 0.5], [2, 1]], sides: ["left", "foot", "foot", "right", "top"] }, mesh: { size: 0.25 },
+    material: { young: 200, poisson: 0.3 }, boundary: { left: { type: "roller" }, foot: { type: "contact", gap: 0.02 }, top: { type: "traction", pressure: 1 } }, scheme: "conforming", solver: { method: "active_set" },
+  };
+  for (const [direction, rows] of [[undefined, 2], [[0, -2], 1]]) {
+    const id = await service.solve({ ...problem, boundary: { ...problem.boundary, foot: { ...problem.boundary.foot, direction } } });
+    const { contact: { foot: { points } } } = await result(id, "contact");
+    assert.equal(points.filter(([x]) => x === 1).length, rows);
+    await open(id, "lift=4");
+    const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+    const [, path] = (await readFile(await file.path(), "utf8")).match(/<path class="f" d="M([^"]*)"/), own = path.split("L").map((place) => place.split(" ").map(Number));
+    // Its places are relative, each to the one before.
+    const [, steps] = (await (await fetch(`${service.url}/v1/solves/${id}/picture.svg?field=von_mises&deformed=4`)).text()).match(/<path class="foundation" d="M([^"]*)"/);
+    const expected = [];
+    for (const [dx, dy] of steps.split("l").flatMap((part, i) => [...part.matchAll(/-?[\d.]+/g)].map(Number).flatMap((each, k, all) => (k % 2 ? [[all[k - 1], each]] : [])))) expected.push(expected.length ? [expected.at(-1)[0] + dx, expected.at(-1)[1] + dy] : [dx, dy]);
+    assert.equal(own.length, points.length);
+    assert.equal(expected.length, points.length);
+    const scale = (expected.at(-1)[0] - expected[0][0]) / (own.at(-1)[0] - own[0][0]);
+    own.forEach((place, i) => place.forEach((each, c) => assert.ok(Math.abs((each - own[0][c]) * scale - (expected[i][c] - expected[0][c])) < 0.2, `${i}: ${own[i]}, ${expected[i]}`)));
+  }
+  wellDone();
+});
+
 test("Two solves are side by side with one view and one scale, and their difference is shown", async () => {
   await open(solves.body, `with=${solves.other}&field=displacement_y`);
   await page.waitForFunction(() => document.querySelectorAll("figure .ticks li").length === 10);
