@@ -133,7 +133,7 @@ function bodyFields(api, reference) {
   const choice = element("select", {}, examples.map(([name, example]) =>
     element("option", { value: name }, `${name}: ${example.summary}`)));
   const fill = () => { body.value = JSON.stringify(content.examples[choice.value].value, null, 2); };
-  choice.addEventListener("change", fill);
+  choice.onchange = fill;
   choice.value = "paper-nonconforming";
   if (examples.length) fill();
   return [element("label", {}, "Example", choice), body];
@@ -146,11 +146,11 @@ function trial(api, method, path, parameters, operation) {
       element("input", { name: parameter.name, required: Boolean(parameter.required) }))),
     operation.requestBody ? bodyFields(api, operation.requestBody) : null,
     element("button", {}, "Send"));
-  form.addEventListener("submit", (event) => {
+  form.onsubmit = (event) => {
     event.preventDefault();
     output.hidden = false;
     send(method, path, parameters, form, output);
-  });
+  };
   return element("details", {}, element("summary", {}, "Try it"), form, output);
 }
 

@@ -71,8 +71,8 @@ function program(gl, fragment) {
   }
   gl.linkProgram(made);
   if (!gl.getProgramParameter(made, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(made));
-  const at = (name) => gl.getUniformLocation(made, name);
-  return { made, turn: at("turn"), frame: at("frame"), lift: at("lift"), surface: at("surface"), range: at("range"), even: at("even"), mesh: at("mesh"), lit: at("lit") };
+  const names = ["turn", "frame", "lift", "surface", "range", "even", "mesh", "lit"];
+  return { made, ...Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(made, name)])) };
 }
 
 const mostSmoothed = 100000; // triangles whose edges are smoothed: software draws four samples a pixel
@@ -167,10 +167,9 @@ export class Drawing {
     gl.uniform4fv(at.frame, view.frame);
     gl.uniform1f(at.lift, view.lift);
     gl.uniform1i(at.surface, this.surface);
-    if (at.range) gl.uniform2fv(at.range, view.range);
-    if (at.even) gl.uniform1i(at.even, view.even);
-    if (at.mesh) gl.uniform1i(at.mesh, view.mesh);
-    if (at.lit) gl.uniform1i(at.lit, view.lit);
+    // What only one of the shaders has is null for the other, which is set to no effect.
+    gl.uniform2fv(at.range, view.range);
+    for (const name of ["even", "mesh", "lit"]) gl.uniform1i(at[name], view[name]);
     gl.bindVertexArray(array);
     gl.drawArrays(gl.TRIANGLES, 0, count);
   }

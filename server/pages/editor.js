@@ -41,7 +41,7 @@ export function editor({ text }) {
     follow();
   }
   const follow = () => { marks.scrollTop = area.scrollTop; };
-  area.addEventListener("scroll", follow);
+  area.onscroll = follow;
 
   /// The nearest that is written of what the pointer names.
   function rangeOf(pointer, places, keys) {
@@ -104,7 +104,7 @@ export function editor({ text }) {
     chosen = 0;
     offers.replaceChildren(...shown.map(({ text: name, about }, i) => {
       const line = element("li", { role: "option", id: `offer${i}` }, element("code", {}, name), about && element("small", {}, about));
-      line.addEventListener("pointerdown", (event) => { event.preventDefault(); take(i); });
+      line.onpointerdown = (event) => { event.preventDefault(); take(i); };
       return line;
     }));
     const { left, top } = caretPlace(caret);
@@ -153,20 +153,20 @@ export function editor({ text }) {
     return place;
   }
 
-  area.addEventListener("input", (event) => {
+  area.oninput = (event) => {
     show([]);
     later();
     if (event.inputType?.startsWith("insert") && /["\w]/.test(event.data ?? "")) offer();
     else close();
-  });
-  area.addEventListener("blur", close);
-  area.addEventListener("keydown", (event) => {
+  };
+  area.onblur = close;
+  area.onkeydown = (event) => {
     if (event.key === " " && event.ctrlKey) { event.preventDefault(); return offer(); }
     if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); return solve.click(); }
     if (offers.hidden) return;
     const does = { ArrowDown: () => choose(chosen + 1), ArrowUp: () => choose(chosen - 1), Enter: () => take(chosen), Tab: () => take(chosen), Escape: close }[event.key];
     if (does) { event.preventDefault(); does(); }
-  });
+  };
 
   async function begin() {
     solve.disabled = true;

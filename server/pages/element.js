@@ -16,9 +16,7 @@ export function drawn(tag, attributes = {}, ...children) {
 }
 
 export function button(text, does, properties = {}) {
-  const made = element("button", { type: "button", ...properties }, text);
-  made.addEventListener("click", does);
-  return made;
+  return element("button", { type: "button", onclick: does, ...properties }, text);
 }
 
 /// The head of a column.

@@ -13,7 +13,7 @@ export class History {
     this.run = "";
     this.drawn = element("div");
     this.details = element("details", {}, element("summary", {}, "Numbers of the history"));
-    this.details.addEventListener("toggle", () => this.showTable());
+    this.details.ontoggle = () => this.showTable();
     this.end = element("p", { role: "status" });
     this.whole = section("history", "History", this.end, this.drawn, this.details);
   }

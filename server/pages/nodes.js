@@ -22,18 +22,22 @@ export function nodesOf({ mesh: { points, triangles, boundary }, stress: { space
   return { stress, displacement, clearance: Object.entries(contact).flatMap(([name, own]) => clearanceNodes(points, boundary[name], own.points)) };
 }
 
-/// Each on the edge of its part that it is nearest to.
+/// Each on the edge of its part that it is nearest to, of two that which follows the one before sooner. Where the
+/// direction of a contact turns a node has two rows, one for each of its edges.
 export function clearanceNodes(points, edges, places) {
   const found = [];
+  let first = 0;
   for (let i = 0; i < places.length; i += 2) {
+    if (places[i] === places[i - 2] && places[i + 1] === places[i - 1]) first += 2;
     let best = [Infinity];
-    for (let e = 0; e < edges.length; e += 2) {
-      const [a, b] = [edges[e], edges[e + 1]], [dx, dy] = [points[2 * b] - points[2 * a], points[2 * b + 1] - points[2 * a + 1]];
+    for (let step = 0; step < edges.length; step += 2) {
+      const e = (first + step) % edges.length, [a, b] = [edges[e], edges[e + 1]], [dx, dy] = [points[2 * b] - points[2 * a], points[2 * b + 1] - points[2 * a + 1]];
       const [px, py] = [places[i] - points[2 * a], places[i + 1] - points[2 * a + 1]];
       const way = Math.min(1, Math.max(0, (px * dx + py * dy) / (dx * dx + dy * dy))), far = Math.hypot(px - way * dx, py - way * dy);
-      if (far < best[0]) best = [far, a, b, way];
+      if (far < best[0]) best = [far, a, b, way, e];
     }
-    if (best.length > 1) found.push(best.slice(1));
+    first = best.pop();
+    found.push(best.slice(1));
   }
   return found;
 }

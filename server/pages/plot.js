@@ -61,11 +61,11 @@ export function plot({ label, x, y, curves, stretches = [], marked = -1, high = 
     }
     return best;
   };
-  svg.addEventListener("pointermove", (event) => {
+  svg.onpointermove = (event) => {
     const i = nearest(event);
     if (i >= 0) said.replaceChildren(element("span", {}, `${x.name} ${short(x.values[i], 6)}`), ...curves.filter(({ values }) => i < values.length).map(({ name, values }) => element("span", {}, `${name} ${short(values[i], 6)}`)));
-  });
-  if (onPick) svg.addEventListener("click", (event) => onPick(nearest(event)));
+  };
+  if (onPick) svg.onclick = (event) => onPick(nearest(event));
   return element("div", { className: "plotted" }, legend(curves), svg, said);
 }
 

@@ -47,7 +47,7 @@ const notesOf = (notes, advice) => [advice && element("p", { className: "notice 
 /// Its value and interval, in so many digits that the ends are told apart.
 function told({ value, lower, upper }) {
   const digits = lower < upper ? Math.ceil(Math.log10(Math.max(-lower, upper) / (upper - lower))) + 2 : 6, own = (number) => short(number, Math.min(Math.max(digits, 4), 15));
-  return [own(value), lower === undefined ? "–" : `${own(lower)} … ${own(upper)}`];
+  return [own(value), lower === undefined ? "–" : upper === undefined ? `≥ ${own(lower)}` : `${own(lower)} … ${own(upper)}`];
 }
 
 const quantitiesTable = (caption, quantities) => [
@@ -56,6 +56,20 @@ const quantitiesTable = (caption, quantities) => [
 
 /// `link` leads to their file.
 export const quantitiesSection = (quantities, link) => section("quantities", "Quantities", quantitiesTable("What the problem asks for", quantities), element("p", {}, link));
+
+// --- what is guaranteed of every answer whose bound is
+
+const reaction = (of, { force, moment, pressure_force: pressure }) => [
+  ...[force].flat().map((own, c, { length }) => [`${of}, force${length > 1 ? ` ${"xy"[c]}` : ""}`, own]), [`${of}, moment`, moment], [`${of}, pressure force`, pressure]];
+
+export function certifiedSection({ energy, work, parts, sums = [], unmet = [] }) {
+  const supports = Object.entries(parts), place = (point) => point.map((each) => short(each)).join(", ");
+  const numbers = [["energy", energy], ["work of the loads", work], ...supports.flatMap(([name, own]) => reaction(name, own)), ...sums.flatMap((own) => reaction(own.parts.join(" + "), own))];
+  const stretches = supports.flatMap(([name, own]) => (own.stretches ?? []).map(({ begin, end, touches, carries_at_most: carries, opens_at_most: opens }) =>
+    [name, place(begin), place(end), touches ? "yes" : "–", carries ?? "–", opens ?? "–"]));
+  return section("certified", "Guaranteed", table("Each lies in its interval", ["of", "value", "interval"], numbers.filter(([, own]) => own).map(([name, own]) => [name, ...told({ ...own, value: own.estimate })])), reasons(unmet),
+    stretches.length > 0 && table("Stretches of contact", ["part", "from", "to", "surely touches", "carries at most", "opens at most"], stretches));
+}
 
 // --- the contact
 
@@ -154,7 +168,7 @@ export function sweepSection(result, view, solve) {
   const name = (entry, i) => entry.title || `entry ${i + 1}`;
   const of = (read) => sweep.map((entry) => (entry.summary ? read(entry.summary) : NaN));
   const choice = element("select", { ariaLabel: "Entry" }, sweep.map((entry, i) => element("option", { value: i + 1 }, `${i + 1}: ${name(entry, i)}`)));
-  choice.addEventListener("change", () => view.set({ entry: Number(choice.value) }));
+  choice.onchange = () => view.set({ entry: Number(choice.value) });
   const show = () => {
     const own = Math.min(Math.max(view.entry, 1), sweep.length) - 1, entry = sweep[own];
     choice.value = own + 1;

@@ -20,14 +20,14 @@ function askForToken(why) {
     const form = element("form", { method: "dialog" }, element("h2", {}, "A token, please"), element("p", {}, why),
       element("p", {}, element("label", { htmlFor: "token" }, "Token"), " ", token), element("button", { className: "main" }, "Go on"));
     const dialog = element("dialog", {}, form);
-    form.addEventListener("submit", (event) => {
+    form.onsubmit = (event) => {
       event.preventDefault();
       sessionStorage.setItem("token", token.value.trim());
       dialog.close();
       dialog.remove();
       asking = null;
       entered();
-    });
+    };
     document.body.append(dialog);
     dialog.showModal();
   });

@@ -6,7 +6,7 @@ import { button, bytes, counted, element, isOpen, progressInWords, save, seconds
 import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
 import { History } from "/pages/history.js";
-import { boundSection, contactSection, figuresSection, levelsSection, quantitiesSection, studySection, sweepSection } from "/pages/sections.js";
+import { boundSection, certifiedSection, contactSection, figuresSection, levelsSection, quantitiesSection, studySection, sweepSection } from "/pages/sections.js";
 import { ask, follow, getBytes, getJson, isAway, persist, pose } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
 import { View } from "/pages/view.js";
@@ -44,11 +44,11 @@ function showHead(solve) {
 /// A link that shows the token if there is one.
 function fileLink(href, name) {
   const link = element("a", { href, className: "small" }, name);
-  link.addEventListener("click", async (event) => {
+  link.onclick = async (event) => {
     if (!sessionStorage.getItem("token")) return;
     event.preventDefault();
     save(href.split("/").slice(-2).join("-"), await (await ask(href)).blob());
-  });
+  };
   return link;
 }
 
@@ -73,7 +73,7 @@ async function showResult(solve) {
   const { summary } = solve, steps = summary.levels && stepsOf(summary), isAlone = results.length === 1;
   const [figure] = showPictures(results, solves, isAlone ? steps : null);
   if (steps && isAlone) stepThrough(figure, result, steps, solve.links);
-  sections.replaceChildren(...[boundSection(summary), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
+  sections.replaceChildren(...[boundSection(summary), summary.certified && certifiedSection(summary.certified), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
     result.study && studySection(result.study), result.sweep && sweepSection(result, view, (problem) => pose(JSON.stringify(problem)).catch(failed)), figuresSection(summary)].filter(Boolean));
 }
 
@@ -104,7 +104,7 @@ function showPictures(results, solves, steps) {
   if (figures.length > 1) link(figures);
   picture.replaceChildren(controlsOf(figures, view, solves.map(({ id }) => id), steps),
     element("div", { className: figures.length > 1 ? "two" : "one" }, figures.map((figure, i) => (figures.length > 1 ? element("div", {}, element("h2", {}, i ? element("a", { href: solves[i].links.self }, figure.name) : figure.name), figure.whole) : figure.whole))),
-    element("p", { className: "quiet small help" }, figures[0].body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].body ? ". The foundation is dashed." : ", f for flat."));
+    element("p", { className: "quiet small help" }, figures[0].shape.body ? "Drag to move, " : "Drag to turn, with Shift to move, ", "wheel or two fingers to zoom; with the keyboard arrows, + and −, 0 for the whole, m for the mesh", figures[0].shape.body ? ". The foundation is dashed." : ", f for flat."));
   return figures;
 }
 

@@ -55,7 +55,7 @@ function show(solve) {
     const tags = element("span", { className: "tags" });
     cells[0].append(link, tags);
     own = { row: element("tr", {}, element("td", {}, box), cells), box, link, tags, cells };
-    box.addEventListener("change", choose);
+    box.onchange = choose;
     rows.set(solve.id, own);
   }
   own.solve = solve;
@@ -118,21 +118,21 @@ function confirmed(question) {
   return new Promise((answer) => {
     const yes = element("button", { className: "main", value: "yes" }, "Delete"), no = element("button", { value: "no" }, "Keep");
     const dialog = element("dialog", {}, element("form", { method: "dialog" }, element("p", {}, question), element("div", { className: "row" }, yes, no)));
-    dialog.addEventListener("close", () => { dialog.remove(); answer(dialog.returnValue === "yes"); });
+    dialog.onclose = () => { dialog.remove(); answer(dialog.returnValue === "yes"); };
     document.body.append(dialog);
     dialog.showModal();
   });
 }
 
-all.addEventListener("change", () => {
+all.onchange = () => {
   for (const { box, row } of rows.values()) box.checked = all.checked && row.isConnected;
   choose();
-});
-for (const control of [status, title, tag]) control.addEventListener("input", () => {
+};
+for (const control of [status, title, tag]) control.oninput = () => {
   const wanted = new URLSearchParams(filters());
   history.replaceState(null, "", wanted.size ? `?${wanted}` : location.pathname);
   look();
-});
+};
 setInterval(() => { if (!document.hidden) look(); }, pause);
-document.addEventListener("visibilitychange", () => { if (!document.hidden) look(); });
+document.onvisibilitychange = () => { if (!document.hidden) look(); };
 look();

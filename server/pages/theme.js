@@ -2,6 +2,6 @@
 {
   const system = matchMedia("(prefers-color-scheme: dark)");
   const show = () => { document.documentElement.dataset.theme = localStorage.getItem("theme") ?? (system.matches ? "dark" : "light"); };
-  system.addEventListener("change", () => { show(); dispatchEvent(new Event("themechange")); });
+  system.onchange = () => { show(); dispatchEvent(new Event("themechange")); };
   show();
 }

@@ -25,6 +25,8 @@ for (const [theme, width, without] of [["light", 320], ["light", 1280], ["dark",
       if (name === "example" || name === "start") await page.getByText(/^Ready/).waitFor();
       const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
       assert.ok(wide <= 0, `${name} sticks out by ${wide} pixels`);
+      const intervals = await page.locator("#certified .scroll").evaluateAll((tables) => tables.slice(0, 1).map((own) => own.scrollWidth - own.clientWidth));
+      assert.deepEqual(intervals, ["body", "membrane", "both"].includes(name) ? [0] : [], `${name} hides intervals`);
       if (width !== 3840) assert.deepEqual(await violations(page), [], name);
       if (process.env.SCREENSHOTS) await page.screenshot({ path: `${process.env.SCREENSHOTS}/${name}-${theme}-${width}.png`, fullPage: width < 3840 && name !== "docs" });
       assert.deepEqual(page.faults, [], name);

@@ -281,6 +281,30 @@ test("The foundation lies beyond an elastic body by its gap, as many times too f
   wellDone();
 });
 
+test("The foundation is that of the service's own picture, also where its direction turns", async () => {
+  const problem = {
+    model: "elasticity", domain: { type: "polygon", vertices: [[0, 1], [0, 0.5], [1, 0], [2, 0.5], [2, 1]], sides: ["left", "foot", "foot", "right", "top"] }, mesh: { size: 0.25 },
+    material: { young: 200, poisson: 0.3 }, boundary: { left: { type: "roller" }, foot: { type: "contact", gap: 0.02 }, top: { type: "traction", pressure: 1 } }, scheme: "conforming", solver: { method: "active_set" },
+  };
+  for (const [direction, rows] of [[undefined, 2], [[0, -2], 1]]) {
+    const id = await service.solve({ ...problem, boundary: { ...problem.boundary, foot: { ...problem.boundary.foot, direction } } });
+    const { contact: { foot: { points } } } = await result(id, "contact");
+    assert.equal(points.filter(([x]) => x === 1).length, rows);
+    await open(id, "lift=4");
+    const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+    const [, path] = (await readFile(await file.path(), "utf8")).match(/<path class="f" d="M([^"]*)"/), own = path.split("L").map((place) => place.split(" ").map(Number));
+    // Its places are relative, each to the one before.
+    const [, steps] = (await (await fetch(`${service.url}/v1/solves/${id}/picture.svg?field=von_mises&deformed=4`)).text()).match(/<path class="foundation" d="M([^"]*)"/);
+    const expected = [];
+    for (const [dx, dy] of steps.split("l").flatMap((part, i) => [...part.matchAll(/-?[\d.]+/g)].map(Number).flatMap((each, k, all) => (k % 2 ? [[all[k - 1], each]] : [])))) expected.push(expected.length ? [expected.at(-1)[0] + dx, expected.at(-1)[1] + dy] : [dx, dy]);
+    assert.equal(own.length, points.length);
+    assert.equal(expected.length, points.length);
+    const scale = (expected.at(-1)[0] - expected[0][0]) / (own.at(-1)[0] - own[0][0]);
+    own.forEach((place, i) => place.forEach((each, c) => assert.ok(Math.abs((each - own[0][c]) * scale - (expected[i][c] - expected[0][c])) < 0.2, `${i}: ${own[i]}, ${expected[i]}`)));
+  }
+  wellDone();
+});
+
 test("Two solves are side by side with one view and one scale, and their difference is shown", async () => {
   await open(solves.body, `with=${solves.other}&field=displacement_y`);
   await page.waitForFunction(() => document.querySelectorAll("figure .ticks li").length === 10);
@@ -385,5 +409,52 @@ test("Quantities stand in a table with their intervals, and those of a sweep as 
   await page.getByLabel("Entry", { exact: true }).last().selectOption("2");
   await page.locator("#sweep .verdict").waitFor();
   assert.equal((await page.locator("#sweep table", { hasText: "Quantities of lower" }).locator("tbody td").first().innerText()), "load <b>");
+  wellDone();
+});
+
+test("What is guaranteed of an answer stands in its interval, and where contact is sure on its stretches", async () => {
+  const read = async (id) => {
+    await open(id);
+    const rows = (table) => page.locator("#certified table").nth(table).locator("tbody tr").evaluateAll((all) => all.map((row) => [...row.children].map((cell) => cell.innerText)));
+    return { certified: (await result(id, "summary")).summary.certified, numbers: new Map((await rows(0)).map(([name, ...cells]) => [name, cells])), stretches: await rows(1) };
+  };
+  // Ends are told to a hundredth of what lies between them.
+  const told = ([number, interval], { estimate, lower, upper }) => {
+    if (upper === undefined) {
+      close(shown(number), estimate);
+      return lower === undefined ? assert.equal(interval, "–") : close(shown(interval.match(/^≥ (.*)$/)[1]), lower);
+    }
+    const near = (text, value) => assert.ok(Math.abs(shown(text) - value) <= 0.01 * (upper - lower) + 1e-15 * Math.abs(value), `${text}, not ${value}`);
+    near(number, estimate);
+    interval.split(" … ").forEach((end, i) => near(end, [lower, upper][i]));
+  };
+  const { certified: { energy, work, parts: { left, bottom } }, numbers, stretches } = await read(await service.solve(await service.example("elastic-block")));
+  const expected = {
+    energy, "work of the loads": work, "left, force x": left.force[0], "left, force y": left.force[1], "left, moment": left.moment,
+    "bottom, force x": bottom.force[0], "bottom, force y": bottom.force[1], "bottom, moment": bottom.moment, "bottom, pressure force": bottom.pressure_force,
+  };
+  assert.deepEqual([...numbers.keys()], Object.keys(expected));
+  for (const [name, cells] of numbers) told(cells, expected[name]);
+  assert.deepEqual(stretches.map(([part, from, to, touches]) => [part, from, to, touches]), bottom.stretches.map(({ begin, end, touches }) => ["bottom", begin.join(", "), end.join(", "), touches ? "yes" : "–"]));
+  assert.ok(stretches.some((row) => row[3] === "yes") && stretches.some((row) => row[3] === "–"));
+  stretches.forEach((row, i) => ["carries_at_most", "opens_at_most"].forEach((key, k) => (key in bottom.stretches[i] ? close(shown(row[4 + k]), bottom.stretches[i][key]) : assert.equal(row[4 + k], "–"))));
+  // Supports that share a point are bounded together alone, and a pressure from below alone.
+  const { certified: { parts, sums: [sum], unmet }, numbers: shared } = await read(solves.constant);
+  assert.deepEqual([parts.left.force.lower, parts.bottom.pressure_force.upper], [undefined, undefined]);
+  told(shared.get("left, force"), parts.left.force);
+  told(shared.get("bottom, pressure force"), parts.bottom.pressure_force);
+  told(shared.get(`${sum.parts.join(" + ")}, force`), sum.force);
+  assert.deepEqual(await page.locator("#certified li").allInnerTexts(), unmet);
+  wellDone();
+});
+
+test("Nothing is shown as guaranteed where nothing is", async () => {
+  const id = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" }, load: { body: ["1 / (x - 0.51)", 0] } });
+  const { summary } = await result(id, "summary");
+  assert.deepEqual([summary.error_bound.guaranteed, summary.certified], [false, undefined]);
+  await open(id);
+  await page.locator("#bound .verdict.open").waitFor();
+  await page.locator("#figures").waitFor();
+  assert.equal(await page.locator("#certified").count(), 0);
   wellDone();
 });

@@ -1,9 +1,10 @@
-// The picture as it is seen as an SVG: constant fields have one colour in each triangle, linear ones bands of colour.
+// The picture as it is seen as a file to keep, SVG or PNG.
 
 import { colour } from "/pages/colours.js";
+import { element } from "/pages/element.js";
 
 const bands = 32;
-export const mostTriangles = 200000; // of a picture that other programs still open
+export const mostTriangles = 200000; // of an SVG that other programs still open
 
 /// The part of a convex polygon where sign · (value − level) ≥ 0; corners are [x, y, value].
 function beyond(polygon, level, sign) {
@@ -18,18 +19,19 @@ function beyond(polygon, level, sign) {
 
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 
+/// Constant fields have one colour in each triangle, linear ones bands of colour.
 export function svgOf(figure) {
-  const { scale: { low, high, diverges }, looked: { even, mesh }, count, frame: { clientWidth: width, clientHeight: height } } = figure;
+  const { scale: { low, high, diverges }, looked: { even, mesh }, shape, frame: { clientWidth: width, clientHeight: height } } = figure;
   const bandOf = (value) => Math.min(bands - 1, Math.max(0, Math.floor(((value - low) / (high - low)) * bands))), startOf = (band) => low + ((high - low) / bands) * band;
   const place = ([x, y]) => `${x.toFixed(2)} ${y.toFixed(2)}`;
-  const order = Array.from({ length: count }, (_, t) => t);
-  if (figure.surface) {
-    const depths = order.map((t) => [0, 1, 2].reduce((sum, k) => sum + figure.depthOf(3 * t + k), 0));
+  const order = Array.from({ length: shape.count }, (_, t) => t);
+  if (shape.surface) {
+    const depths = order.map((t) => [0, 1, 2].reduce((sum, k) => sum + shape.depthOf(3 * t + k), 0));
     order.sort((a, b) => depths[b] - depths[a]);
   }
   const shapes = [], put = (polygon, band) => { if (polygon.length > 2) shapes.push([band, `M${polygon.map(place).join("L")}z`]); };
   for (const t of order) {
-    const corners = [0, 1, 2].map((k) => [...figure.corner(3 * t + k), figure.at(3 * t + k)]);
+    const corners = shape.cornersOf(t).map((corner, k) => [...corner, figure.at(3 * t + k)]);
     const first = bandOf(even ? corners[0][2] : Math.min(...corners.map((own) => own[2]))), last = even ? first : bandOf(Math.max(...corners.map((own) => own[2])));
     for (let band = first; band <= last; ++band) {
       let part = corners;
@@ -40,12 +42,12 @@ export function svgOf(figure) {
     if (mesh) shapes.push([-1, `M${corners.map(place).join("L")}z`]);
   }
   // Shapes of one colour that follow each other are one element; lines may wait where nothing hides them.
-  const lines = figure.surface ? [] : shapes.filter(([band]) => band < 0), filled = figure.surface ? shapes : shapes.filter(([band]) => band >= 0), paths = [];
+  const lines = shape.surface ? [] : shapes.filter(([band]) => band < 0), filled = shape.surface ? shapes : shapes.filter(([band]) => band >= 0), paths = [];
   for (const [band, path] of [...filled, ...lines]) {
     if (paths.at(-1)?.[0] === band) paths.at(-1)[1].push(path);
     else paths.push([band, [path]]);
   }
-  const foundation = figure.foundation().map((line) => `<path class="f" d="M${line.map(place).join("L")}"/>`).join("");
+  const foundation = shape.foundation().map((line) => `<path class="f" d="M${line.map(place).join("L")}"/>`).join("");
   const rgb = (band) => `rgb(${colour(band / (bands - 1), diverges).join(",")})`;
   const styles = Array.from({ length: bands }, (_, band) => `.c${band}{fill:${rgb(band)};stroke:${rgb(band)}}`).join("");
   const bar = Array.from({ length: bands }, (_, band) => `<rect class="c${band}" x="${width + 10}" y="${30 + ((bands - 1 - band) * (height - 20)) / bands}" width="14" height="${(height - 20) / bands}"/>`);
@@ -58,4 +60,22 @@ export function svgOf(figure) {
 ${bar.join("")}${ticks.join("")}
 </svg>
 `;
+}
+
+/// With its scale.
+export async function pngOf(figure) {
+  do figure.draw(); while (figure.moving);
+  const { canvas, over, frame, scaleBar, ticks, title, dense: d } = figure, { width, height } = canvas;
+  const whole = element("canvas", { width: width + 90 * d, height: height + 30 * d }), pen = whole.getContext("2d"), style = getComputedStyle(frame);
+  pen.fillStyle = style.getPropertyValue("--paper");
+  pen.fillRect(0, 0, whole.width, whole.height);
+  pen.drawImage(canvas, 0, 30 * d);
+  pen.drawImage(over, 0, 30 * d);
+  pen.imageSmoothingEnabled = false;
+  pen.drawImage(scaleBar, width + 8 * d, 40 * d, 14 * d, height - 20 * d);
+  pen.fillStyle = style.getPropertyValue("--ink");
+  pen.font = `${13 * d}px system-ui, sans-serif`;
+  pen.fillText(title.textContent, 10 * d, 20 * d);
+  [...ticks.children].forEach((tick, i) => pen.fillText(tick.textContent, width + 27 * d, 45 * d + (i / 4) * (height - 20 * d)));
+  return new Promise((resolve) => { whole.toBlob(resolve, "image/png"); });
 }
