@@ -30,7 +30,7 @@ Failure internal_error() {
 
 }  // namespace
 
-Failure describe(std::exception_ptr error) {
+Failure describe(const std::exception_ptr& error) {
   try {
     std::rethrow_exception(error);
   } catch (const api::MalformedJson& malformed) {

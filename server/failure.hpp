@@ -14,6 +14,6 @@ struct Failure {
 
 /// Words for an exception of the solver, the formats or the machine. The text of an exception that
 /// nobody foresaw stays inside: it goes to the log, where the fields of this thread lead to it.
-Failure describe(std::exception_ptr error);
+Failure describe(const std::exception_ptr& error);
 
 }  // namespace signorini::server

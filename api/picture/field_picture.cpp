@@ -249,7 +249,13 @@ std::string styles(const ColourMap& colours) {
       ".foundation{fill:none;stroke:#000;stroke-width:1.6;stroke-dasharray:7 4}";
   for (int band = 0; band < ColourMap::kBands; ++band) {
     const std::string own = colours.colour(band);
-    all += ".c" + std::to_string(band) + "{fill:" + own + ";stroke:" + own + "}";
+    all.append(".c")
+        .append(std::to_string(band))
+        .append("{fill:")
+        .append(own)
+        .append(";stroke:")
+        .append(own)
+        .append("}");
   }
   return all;
 }

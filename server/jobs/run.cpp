@@ -33,7 +33,7 @@ JobStatus status_of(Outcome outcome) {
   return outcome == Outcome::cancelled ? JobStatus::cancelled : JobStatus::failed;
 }
 
-Ending failed(std::exception_ptr error, const LiveSolve& live) {
+Ending failed(const std::exception_ptr& error, const LiveSolve& live) {
   Ending ending;
   ending.status = JobStatus::failed;
   ending.error = describe(error).details;

@@ -116,7 +116,7 @@ class ElasticSums {
   Given given_on(int t, const AffineMap& map) const;
   const JohnsonMercierNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
   TriangleSums by_norms(const JohnsonMercierNorms& norms, const Given& given, Inner& inner) const;
-  TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, Given given,
+  TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
                                               const JohnsonMercierRule& rule) const;

@@ -130,7 +130,7 @@ class RigidBody {
       if (!discrete_.traces.is_free(dof)) continue;
       const double force = discrete_.coupling_load[discrete_.traces[dof].unknown];
       if (force == 0) continue;
-      const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
+      const Point &a = corners[(e + 1) % 3], &b = corners[(e + 2) % 3];
       const Point x = discrete_.spaces().order == 0 ? Point((a + b) / 2) : (function == 0 ? a : b);
       work.add(force, frame_.component(j % components_, x));
     }

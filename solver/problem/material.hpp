@@ -11,7 +11,7 @@ namespace signorini {
 struct MembraneStiffness {
   Field xx{1}, xy{0}, yy{1};
 
-  static MembraneStiffness isotropic(Field kappa) { return {kappa, Field(0), kappa}; }
+  static MembraneStiffness isotropic(const Field& kappa) { return {kappa, Field(0), kappa}; }
 };
 
 enum class Plane { strain, stress };

@@ -33,7 +33,7 @@ std::vector<FluxFunctional> reactions_on(const Discretization& discrete, const B
   for (const int edge : part.edges) {
     const int t = triangle_at(discrete, edge), e = discrete.mesh.local_edge(t, edge);
     const auto corners = discrete.mesh.corners(t);
-    const Point a = corners[(e + 1) % 3], b = corners[(e + 2) % 3];
+    const Point &a = corners[(e + 1) % 3], &b = corners[(e + 2) % 3];
     LocalVector force[2], moment = LocalVector::Zero(d * (order + 1));
     for (LocalVector& weights : force) weights = moment;
     for (int j = 0; j <= order; ++j) {

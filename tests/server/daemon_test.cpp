@@ -241,7 +241,7 @@ void wait_for_line(Daemon& daemon, const std::string& line) {
 }
 
 TEST_F(DaemonTest, DrainsUntilTheRunningSolvesHaveEnded) {
-  const std::string id = submit(paper_problem(192));
+  const std::string id = submit(paper_problem(sanitized ? 96 : 192));
   wait_for_phase(id, "assemble");
   daemon_.process().signal(SIGTERM);
   wait_for_line(daemon_, "draining");

@@ -43,9 +43,18 @@ pid_t spawn(const std::vector<std::string>& command, const std::string& log) {
 
 const std::string programs = POSTGRES_PROGRAMS;
 
+/// In memory where there is room for it: a disk that others write to may keep a new database waiting for
+/// seconds.
+std::string place() {
+  constexpr std::uintmax_t enough = 1'000'000'000;
+  std::error_code none;
+  const auto space = std::filesystem::space("/dev/shm", none);
+  return !none && space.available > enough ? "/dev/shm/postgres-XXXXXX" : "/tmp/postgres-XXXXXX";
+}
+
 }  // namespace
 
-PostgresServer::PostgresServer() : directory_("/tmp/postgres-XXXXXX") {
+PostgresServer::PostgresServer() : directory_(place()) {
   if (::mkdtemp(directory_.data()) == nullptr) throw std::runtime_error("cannot make " + directory_);
   if (const passwd* const user = ::getuid() == 0 ? ::getpwnam("postgres") : nullptr)
     if (::chown(directory_.c_str(), user->pw_uid, user->pw_gid) != 0)
@@ -71,6 +80,10 @@ std::string PostgresServer::url(const std::string& database) const {
 std::string PostgresServer::new_database(const std::string& name) {
   postgres::Connection(url("postgres"), 10s).script("CREATE DATABASE " + name + " STRATEGY file_copy");
   return url(name);
+}
+
+void PostgresServer::drop_database(const std::string& name) {
+  postgres::Connection(url("postgres"), 10s).script("DROP DATABASE IF EXISTS " + name + " WITH (FORCE)");
 }
 
 void PostgresServer::start() {
@@ -105,7 +118,10 @@ PostgresServer& shared_postgres() {
 
 std::string empty_database() {
   static std::atomic<int> made = 0;
-  return shared_postgres().new_database("store_" + std::to_string(++made));
+  constexpr int at_once = 4;  // that a test uses, at most
+  const int number = ++made;
+  if (number > at_once) shared_postgres().drop_database("store_" + std::to_string(number - at_once));
+  return shared_postgres().new_database("store_" + std::to_string(number));
 }
 
 }  // namespace signorini::server

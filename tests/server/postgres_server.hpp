@@ -18,6 +18,7 @@ class PostgresServer {
 
   /// The URL of a new database of this name.
   std::string new_database(const std::string& name);
+  void drop_database(const std::string& name);
   std::string url(const std::string& database) const;
 
   void start();

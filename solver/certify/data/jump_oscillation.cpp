@@ -88,7 +88,8 @@ double jump_oscillation(const VectorField& load, const ProjectedLoad& projected,
   const PiecewiseLoads<D>& loads = piecewise_loads<D>(map.reference);
   const Mesh& pieces = loads.pieces();
   const AffineMap whole(corners);
-  const Point origin = corners[map.first], reference_origin = reference_triangles()[map.reference].corners[0];
+  const Point &origin = corners[map.first],
+              reference_origin = reference_triangles()[map.reference].corners[0];
   const double area = whole.determinant / 2, mean = projected.unbalanced / std::sqrt(area);
   typename PiecewiseLoads<D>::Values values;
   double rest_square = 0, uncertain_square = 0;

@@ -120,7 +120,7 @@ TriangleSums ElasticSums::by_norms(const JohnsonMercierNorms& norms, const Given
   return sums;
 }
 
-TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRule& rule, Given given,
+TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                                     double error_of_whole, LawField<2>& law, Inner& inner) const {
   const JohnsonMercierOperators<1> values(rule, map, given, laws_at(discrete_, rule, map, law));
   inner = values.inner;
