@@ -27,17 +27,12 @@ struct Counts {
 /// Meshes of so many triangles are cut into pieces to see what their factor takes.
 constexpr std::int64_t most_cut = 4 * few_triangles;
 
-/// And of so many if no coarser mesh shows the shape: some twentieth of a second.
+/// And so many are made if no mesh of few shows the shape: some twentieth of a second.
 constexpr std::int64_t most_of_own_shape = 3 * few_triangles;
 
 /// The same with edges so many times as long.
 MeshRequest coarser(MeshRequest request, double times) {
-  if (auto* squares = std::get_if<Divisions>(&request.fineness)) {
-    squares->x = static_cast<int>(std::ceil(squares->x / times));
-    squares->y = static_cast<int>(std::ceil(squares->y / times));
-  } else {
-    std::get<LargestEdge>(request.fineness).length *= times;
-  }
+  std::get<LargestEdge>(request.fineness).length *= times;
   for (LocalSize& local : request.sizes) local.size *= times;
   return request;
 }
@@ -93,10 +88,8 @@ class Estimation {
   void cut(const Mesh& mesh);
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles);
-  void cut_coarser(std::int64_t unrefined, const std::optional<MeshRequest>& with_few,
-                   std::int64_t triangles);
-  std::optional<MeshRequest> coarser_with_few(std::int64_t triangles) const;
-  bool has_formula() const;
+  void cut_coarser(const MeshRequest& coarse, std::int64_t most, std::int64_t triangles);
+  std::optional<MeshRequest> coarser_mesh(std::int64_t triangles, std::int64_t most) const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
@@ -143,38 +136,21 @@ void Estimation::cut(const MeshData& data) {
   cut(data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; });
 }
 
-/// Whether a formula knows into what pieces its mesh is cut: squares that are nearly squares. Cuts through
-/// others go where they are long, not where there are few.
-bool Estimation::has_formula() const {
-  if (!is_rectangle()) return false;
-  constexpr double nearly = 1.5;
-  const auto& rectangle = std::get<Rectangle>(problem_.domain);
-  const auto [x, y] = divisions(rectangle, problem_.mesh);
-  const double shape = rectangle.size.x() / x / (rectangle.size.y() / y);
-  return shape < nearly && 1 / shape < nearly;
-}
-
-/// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. None if
+/// The request for edges twice as long, or four times, until the polygon's mesh has so few triangles. None if
 /// its vertices or its narrow places ask for more, whatever the size.
-std::optional<MeshRequest> Estimation::coarser_with_few(std::int64_t triangles) const {
+std::optional<MeshRequest> Estimation::coarser_mesh(std::int64_t triangles, std::int64_t most) const {
   constexpr int attempts = 3;
-  double times = longer_for(triangles, few_triangles);
+  double times = longer_for(triangles, most);
   for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
     const MeshRequest request = coarser(problem_.mesh, times);
-    if ((*predicted_)(request).triangles <= few_triangles) return request;
+    if ((*predicted_)(request).triangles <= most) return request;
   }
   return std::nullopt;
 }
 
-/// By a mesh of the shape of those that it asks for. A rectangle's are made at once.
-void Estimation::cut_coarser(std::int64_t unrefined, const std::optional<MeshRequest>& with_few,
-                             std::int64_t triangles) {
-  if (const auto* rectangle = std::get_if<Rectangle>(&problem_.domain)) {
-    const MeshRequest request = coarser(problem_.mesh, longer_for(unrefined, most_cut));
-    return cut_finer(rectangle_mesh(*rectangle, divisions(*rectangle, request), request.pattern), triangles);
-  }
-  if (!with_few) return;
-  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, *with_few);
+/// By a mesh of the shape of those that it asks for.
+void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t most, std::int64_t triangles) {
+  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most);
   if (!mesh) return;
   may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
   cut_finer(std::move(*mesh), triangles);
@@ -225,9 +201,12 @@ Counts Estimation::count() {
   if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
-  const std::optional<MeshRequest> with_few = is_large ? coarser_with_few(sizes.triangles) : std::nullopt;
-  // Few, or more where no coarser one shows the shape.
-  const std::int64_t most = is_large && !with_few ? most_of_own_shape : few_triangles;
+  std::int64_t most = few_triangles;
+  std::optional<MeshRequest> coarse = is_large ? coarser_mesh(sizes.triangles, most) : std::nullopt;
+  if (is_large && !coarse) {
+    most = most_of_own_shape;
+    coarse = coarser_mesh(sizes.triangles, most);
+  }
   if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
     mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
   if (mesh) {
@@ -239,11 +218,8 @@ Counts Estimation::count() {
     cut_finer(*mesh, triangles);
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
-  } else {
-    // Those of another mesh show the shape of a polygon too.
-    if (is_rectangle()) pieces_.reset();
-    if (std::min(may_be_made_, may_be_cut_) > 0 && !has_formula())
-      cut_coarser(sizes.triangles, with_few, triangles);
+  } else if (coarse && std::min(may_be_made_, may_be_cut_) > 0) {
+    cut_coarser(*coarse, most, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {

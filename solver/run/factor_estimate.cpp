@@ -10,6 +10,7 @@
 #include "progress/observer.hpp"
 #include "progress/progress.hpp"
 #include "system/dissection.hpp"
+#include "system/short_cut.hpp"
 
 namespace signorini {
 namespace {
@@ -24,8 +25,8 @@ struct Direction {
   double pieces = 1;     ///< side by side
   bool straight = true;  ///< all cuts so far went between squares
 
-  void halve(bool is_regular) {
-    straight = straight && is_regular && std::fmod(squares, 2) == 0;
+  void halve(bool between_squares) {
+    straight = straight && between_squares;
     squares /= 2;
     pieces *= 2;
   }
@@ -49,16 +50,17 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, const Spaces& 
   FactorBytes all;
   for (int level = 0; level <= levels; ++level) {
     const double pieces = std::exp2(level);
+    const double triangles = all_triangles / pieces;
     const double ragged_x = x.straight ? 1 : kRagged, ragged_y = y.straight ? 1 : kRagged;
     const double sides = ragged_x * x.inner_sides() * y.squares + ragged_y * y.inner_sides() * x.squares;
-    const bool along_x = x.extent() >= y.extent();
+    const bool are_few = triangles < ShortCut::kFew;
+    const bool along_x = are_few ? x.extent() >= y.extent() : x.squares >= y.squares;
+    Direction& longer = along_x ? x : y;
+    const bool between_squares = is_regular && (!are_few || std::fmod(longer.squares, 2) == 0);
     double pivots = 0;
     if (level < levels) {
-      Direction cut = along_x ? x : y;
-      cut.halve(is_regular);
-      pivots = (cut.straight ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
+      pivots = (between_squares ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
     } else {
-      const double triangles = all_triangles / pieces;
       pivots =
           std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
     }
@@ -70,7 +72,7 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, const Spaces& 
         ragged_x * x.most_inner_sides() * y.squares + ragged_y * y.most_inner_sides() * x.squares;
     const double largest = most * (per_edge + per_point) + contact / x.pieces;
     all.stacks += kValue * (level > 0 ? 2 : 1) * largest * largest;
-    (along_x ? x : y).halve(is_regular);
+    longer.halve(between_squares);
   }
   return all;
 }

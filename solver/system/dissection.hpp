@@ -9,9 +9,9 @@
 namespace signorini {
 
 /// The order of a sparse factorisation by geometric nested dissection (George 1973): the elements are cut
-/// into halves at the median of their centres, and the halves again, until a piece has a few; an unknown is
-/// eliminated in the smallest piece that holds all its elements, after everything inside the halves of that
-/// piece. Trailing unknowns are never eliminated.
+/// into two halves that share few unknowns (system/short_cut.hpp), and the halves again, until a piece has a
+/// few; an unknown is eliminated in the smallest piece that holds all its elements, after everything inside
+/// the halves of that piece. Trailing unknowns are never eliminated.
 ///
 /// The pieces are a complete binary tree, numbered as in a heap: 1 is the whole, 2 k and 2 k + 1 are the
 /// halves of k, and 0 stands outside, for what is never eliminated.
@@ -39,7 +39,8 @@ class Dissection {
   }
   /// The elements of a leaf.
   std::span<const int> elements(int leaf) const {
-    return std::span(elements_).subspan(first_element(leaf), first_element(leaf + 1) - first_element(leaf));
+    const std::size_t first = first_element_[leaf - leaves_];
+    return std::span(elements_).subspan(first, first_element_[leaf - leaves_ + 1] - first);
   }
 
   /// The unknowns of all fronts, and where those of a piece begin among them. Whoever takes them leaves no
@@ -70,7 +71,6 @@ class Dissection {
   std::vector<int> unknowns_in(const ElementSum& sum, int leaf) const;
   std::vector<int> left_by_halves(int piece) const;
   bool is_before(int a, int b) const;
-  std::size_t first_element(int leaf) const;
 
   template <typename Visit>
   void visit_inside_out(int piece, Visit& visit) const {
@@ -90,9 +90,10 @@ class Dissection {
   }
 
   int leaves_ = 1;
-  std::vector<int> elements_;       ///< leaf by leaf
-  std::vector<int> eliminated_in_;  ///< the piece of each unknown
-  std::vector<Place> places_;       ///< of each piece's front in unknowns_
+  std::vector<int> elements_;               ///< leaf by leaf
+  std::vector<std::size_t> first_element_;  ///< of each leaf, and behind the last
+  std::vector<int> eliminated_in_;          ///< the piece of each unknown
+  std::vector<Place> places_;               ///< of each piece's front in unknowns_
   std::vector<int> unknowns_;
 };
 

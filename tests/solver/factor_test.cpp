@@ -225,7 +225,7 @@ TEST_P(SparseFactor, EndsWhenTheObserverDoes) {
 }
 
 TEST_P(SparseFactor, ALongSolveEndsWhenTheObserverDoes) {
-  constexpr int n = 550;
+  constexpr int n = 800;
   PlacedMatrix matrix{Eigen::MatrixXd::Ones(n, n) + Eigen::MatrixXd::Identity(n, n), {}};
   for (int i = 0; i < n; ++i) matrix.points.emplace_back(i, 0);
   const Factor factor = factor_of(matrix, 0);

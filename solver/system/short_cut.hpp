@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "system/element_sum.hpp"
+
+namespace signorini {
+
+/// Where an element of a sum lies.
+struct Centre {
+  Point at;
+  int element;
+};
+
+/// Cuts pieces of a mesh in two, across x or y, so that the halves share few unknowns.
+///
+/// That is at the median of the longer extent where it is as short as a cut between squares would be. Arms
+/// and long triangles make it longer: then it is the cut with the least ratio of what the halves a, b share
+/// to |a| |b| (the ratio cut of Wei and Cheng 1989), of all those across x and y that leave neither half less
+/// than some third. Leaves have from half to twice the elements that they would have if all had as many.
+class ShortCut {
+ public:
+  /// Fewer elements are cut at the median: what is looked for there costs more than it saves.
+  static constexpr std::size_t kFew = 128;
+
+  ShortCut(const ElementSum& sum, int leaves);
+
+  /// Sorts the elements of a piece, which is to have so many leaves, so that those of a half are neighbours,
+  /// and says how many the first half has.
+  std::size_t operator()(std::span<Centre> piece, int leaves);
+
+ private:
+  struct Cut {
+    int along;
+    std::size_t first_half;
+    double ratio;
+  };
+
+  int shared(std::span<const Centre> piece, std::size_t first_half);
+  Cut shortest(std::span<Centre> piece, std::size_t least_half, int along);
+
+  const ElementSum& sum_;
+  const double elements_per_leaf_;
+  const double per_side_;  ///< unknowns of a side with one of its points: a third of a triangle's
+  int seen_ = 0;
+  std::vector<int> seen_as_;       ///< of each unknown: what it was last seen as,
+  std::vector<int> first_, last_;  ///< and the places of its elements in the piece that was last looked at
+};
+
+}  // namespace signorini
