@@ -160,6 +160,16 @@ TEST(Certified, SaysWhereAContactSurelyTouches) {
   EXPECT_TRUE(is_tight);
 }
 
+/// Where a contact of the paper is open, its pressure is rounding of either sign.
+TEST(Certified, SaysNothingOfOpeningsUnderAPressureOfRounding) {
+  for (const int n : {8, 12, 16}) {
+    const Solution solution = solve(problems::paper(Scheme::nonconforming, n), {ActiveSet{}, {}});
+    for (const CertifiedSupport& support : solution.summary.certified.value().supports)
+      for (const CertifiedStretch& stretch : support.stretches)
+        EXPECT_LE(stretch.opens_at_most.value_or(0), 1);
+  }
+}
+
 TEST(Certified, IsAbsentWhereTheBoundIsNotGuaranteed) {
   Problem problem = pressed_block(Scheme::conforming);
   problem.body = VectorField(

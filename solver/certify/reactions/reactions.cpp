@@ -220,8 +220,8 @@ std::vector<CertifiedStretch> Reactions::stretches(int part) const {
   return all;
 }
 
-/// ∫ p* (g − u_n) is at most R²/4. Without Γ_D the pressure may change to carry what is not known of the
-/// loads.
+/// ∫ p* (g − u_n) is at most R²/4, which says nothing where p* is rounding beside its largest. Without Γ_D
+/// the pressure may change to carry what is not known of the loads.
 std::optional<double> Reactions::most_opening(std::span<const int> edges) const {
   const auto& boundary = discrete_.problem.boundary;
   if (std::ranges::none_of(boundary,
@@ -232,7 +232,10 @@ std::optional<double> Reactions::most_opening(std::span<const int> edges) const 
     const auto own = least_pressure_.find(edge);
     least = std::min(least, own == least_pressure_.end() ? 0 : own->second);
   }
-  if (!(least > 0)) return std::nullopt;
+  constexpr double rounding = 1e-9;
+  double largest = 0;
+  for (const auto& [edge, pressure] : least_pressure_) largest = std::max(largest, pressure);
+  if (!(least > rounding * largest)) return std::nullopt;
   const ErrorBound& bound = *solution_.summary.error_bound;
   const double energies = bound.energy_upper - bound.energy_lower, contact = bound.parts.contact;
   return (2 * energies + contact * contact) / 4 / least;
