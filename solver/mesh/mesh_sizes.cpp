@@ -21,7 +21,7 @@ namespace {
 /// of the boundary that are nearly as long as they may be and are cut once more for their neighbours, edges
 /// of the boundary for every doubling of their length, and triangles for every doubling of the distance from
 /// a point, from points that lie close together but the first.
-constexpr double kTrianglesByArea = 5.3, kCutOnceMore = 1.2, kEdgesByDoubling = 2, kTrianglesByDoubling = 15;
+constexpr double kTrianglesByArea = 5.4, kCutOnceMore = 1.2, kEdgesByDoubling = 2, kTrianglesByDoubling = 15;
 
 /// Triangles that a piece of the boundary has to itself: where they reach across the domain, where they are
 /// as large as the others, and where those around them grow to the size of the others.

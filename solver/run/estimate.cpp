@@ -27,8 +27,14 @@ struct Counts {
 /// Meshes of so many triangles are cut into pieces to see what their factor takes.
 constexpr std::int64_t most_cut = 4 * few_triangles;
 
-/// And so many are made if no mesh of few shows the shape: some twentieth of a second.
-constexpr std::int64_t most_of_own_shape = 3 * few_triangles;
+/// And so many are made if no mesh of few shows the shape: some twentieth of a second at most.
+constexpr std::int64_t most_of_own_shape = 2 * few_triangles;
+
+/// A mesh that shows the shape of a finer one.
+struct Coarser {
+  MeshRequest request;
+  bool has_few;  ///< triangles
+};
 
 /// The same with edges so many times as long.
 MeshRequest coarser(MeshRequest request, double times) {
@@ -88,8 +94,8 @@ class Estimation {
   void cut(const Mesh& mesh);
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles);
-  void cut_coarser(const MeshRequest& coarse, std::int64_t most, std::int64_t triangles);
-  std::optional<MeshRequest> coarser_mesh(std::int64_t triangles, std::int64_t most) const;
+  void cut_coarser(const MeshRequest& coarse, std::int64_t triangles);
+  std::optional<Coarser> coarser_mesh(std::int64_t triangles) const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
@@ -136,21 +142,24 @@ void Estimation::cut(const MeshData& data) {
   cut(data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; });
 }
 
-/// The request for edges twice as long, or four times, until the polygon's mesh has so few triangles. None if
-/// its vertices or its narrow places ask for more, whatever the size.
-std::optional<MeshRequest> Estimation::coarser_mesh(std::int64_t triangles, std::int64_t most) const {
+/// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
+/// vertices or its narrow places ask for more, whatever the size, it is one with twice as many, or none.
+std::optional<Coarser> Estimation::coarser_mesh(std::int64_t triangles) const {
   constexpr int attempts = 3;
-  double times = longer_for(triangles, most);
+  double times = longer_for(triangles, few_triangles);
+  std::optional<Coarser> larger;
   for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
     const MeshRequest request = coarser(problem_.mesh, times);
-    if ((*predicted_)(request).triangles <= most) return request;
+    const std::int64_t made = (*predicted_)(request).triangles;
+    if (made <= few_triangles) return Coarser{request, true};
+    if (made <= most_of_own_shape && !larger) larger = {request, false};
   }
-  return std::nullopt;
+  return larger;
 }
 
 /// By a mesh of the shape of those that it asks for.
-void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t most, std::int64_t triangles) {
-  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most);
+void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t triangles) {
+  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most_of_own_shape);
   if (!mesh) return;
   may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
   cut_finer(std::move(*mesh), triangles);
@@ -201,12 +210,9 @@ Counts Estimation::count() {
   if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
-  std::int64_t most = few_triangles;
-  std::optional<MeshRequest> coarse = is_large ? coarser_mesh(sizes.triangles, most) : std::nullopt;
-  if (is_large && !coarse) {
-    most = most_of_own_shape;
-    coarse = coarser_mesh(sizes.triangles, most);
-  }
+  const std::optional<Coarser> coarse = is_large ? coarser_mesh(sizes.triangles) : std::nullopt;
+  // Few, or twice as many where no coarser one of few shows the shape.
+  const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
     mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
   if (mesh) {
@@ -219,7 +225,7 @@ Counts Estimation::count() {
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
   } else if (coarse && std::min(may_be_made_, may_be_cut_) > 0) {
-    cut_coarser(*coarse, most, triangles);
+    cut_coarser(coarse->request, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
   for (int i = 0; i < problem_.mesh.refine; ++i) {
