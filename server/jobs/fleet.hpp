@@ -16,6 +16,7 @@ namespace signorini::server {
 /// What a worker would run next.
 struct Wish {
   double memory = std::numeric_limits<double>::infinity();  ///< bytes that the solve may be predicted to take
+  double most_memory = memory;                              ///< the same when nothing else runs here
   std::vector<std::int64_t> operators =
       {};  ///< marks of those that are at hand: their jobs come first, for a while
 };
@@ -41,6 +42,7 @@ struct Sought {
   std::string job;
   std::uint64_t attempt = 0;  ///< the last one that he has seen; 0: none
   std::size_t known = 0;      ///< its iterations that he has seen
+  bool iterations = true;     ///< whether he wants them
 };
 
 /// A job that was sought. One that is nowhere is not found.
@@ -50,7 +52,7 @@ struct Found {
   std::uint64_t attempt = 0;  ///< the last one; 0: none
   std::optional<Time> started;
   Progress progress;
-  std::vector<Iteration> iterations;  ///< that are not known yet; all, if the attempt is another one
+  std::vector<Iteration> iterations;  ///< wanted and not known yet; all, if the attempt is another one
 };
 
 /// What processes with one store tell each other by it. Each claim is a lease: whoever does not renew it

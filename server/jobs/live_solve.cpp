@@ -44,6 +44,8 @@ void LiveSolve::follow(const Progress& progress, const std::vector<Iteration>& i
   sweep_ = progress.sweep;
   studied_ = progress.studied;
   study_ = progress.study;
+  iteration_ = progress.iteration;
+  residual_ = progress.residual;
   history_.insert(history_.end(), iterations.begin(), iterations.end());
 }
 
@@ -56,6 +58,8 @@ Progress LiveSolve::progress() const {
   progress.sweep = sweep_;
   progress.studied = studied_;
   progress.study = study_;
+  progress.iteration = iteration_;
+  progress.residual = residual_;
   if (!history_.empty()) {
     progress.iteration = history_.back().number;
     progress.residual = residual(history_.back());

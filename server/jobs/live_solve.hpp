@@ -44,7 +44,8 @@ class LiveSolve : public Observer {
   void lose() { lost_ = cancelled_ = true; }
   bool is_lost() const { return lost_; }
 
-  /// Takes over how far a solve is that another process runs, and what it has iterated since the last time.
+  /// Takes over how far a solve is that another process runs, and what it has iterated since the last time,
+  /// as far as that is asked for.
   void follow(const Progress& progress, const std::vector<Iteration>& iterations);
 
   Progress progress() const;
@@ -62,6 +63,8 @@ class LiveSolve : public Observer {
   std::optional<Phase> phase_;
   std::optional<Level> level_;
   std::vector<Iteration> history_;
+  int iteration_ = 0;               ///< that was taken over, where the history was not
+  std::optional<double> residual_;  ///< of it
   std::size_t swept_ = 0, sweep_ = 0;
   std::size_t studied_ = 0, study_ = 0;
 };

@@ -8,6 +8,7 @@
 namespace signorini::server {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto between_looks = 500ms;  // without hints
@@ -39,12 +40,15 @@ void Lookout::listen(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     try {
       if (fleet_.wait_for_hint(between_looks)) ears_.queued();
+      const auto begin = Clock::now();
       look();
+      // Half of the time at most, however much others hint and however many wait here.
+      pause(stop, std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin));
     } catch (const StoreUnavailable&) {
-      std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, stop, between_looks, [] { return false; });
+      pause(stop, between_looks);
     } catch (const std::exception& error) {
       spdlog::error("other processes cannot be seen: {}", error.what());
+      pause(stop, between_looks);
     }
   }
 }
@@ -92,9 +96,13 @@ void Lookout::tell(const std::stop_token& stop) {
     } catch (const std::exception&) {
       // Others look by themselves.
     }
-    std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, stop, between_hints, [] { return false; });
+    pause(stop, between_hints);
   }
+}
+
+void Lookout::pause(const std::stop_token& stop, std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  wake_.wait_for(lock, stop, time, [] { return false; });
 }
 
 }  // namespace signorini::server

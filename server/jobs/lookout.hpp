@@ -43,6 +43,7 @@ class Lookout {
   void look();
   void follow(const Found& found);
   void tell(const std::stop_token& stop);
+  void pause(const std::stop_token& stop, std::chrono::milliseconds time);
 
   /// A solve elsewhere, as it is known here.
   struct Mirror {

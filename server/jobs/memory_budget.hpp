@@ -34,6 +34,9 @@ class MemoryBudget {
   /// What one job more may take that begins at once.
   double left() const;
 
+  /// What one job may take that runs alone.
+  double most() const { return max_bytes_; }
+
   /// What the job may take, with what the largest of the others leave; more than it was predicted to.
   double left_for(const std::string& job) const;
 

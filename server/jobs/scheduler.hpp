@@ -78,7 +78,7 @@ class Scheduler {
   /// ago.
   std::shared_ptr<const LiveSolve> live(const std::string& id) const;
 
-  /// The same of those of the jobs that run, by their ids.
+  /// The same of those of the jobs that run, by their ids; what others have iterated is not in it.
   LiveSolves live(std::span<const Job> jobs) const;
 
   bool accepting() const;
@@ -119,9 +119,9 @@ class Scheduler {
   bool pause();
   std::vector<Held> held() const;
   LookoutEars ears();
-  LiveSolves look_elsewhere(const std::vector<std::string>& ids) const;
+  LiveSolves look_elsewhere(const std::vector<std::string>& ids, bool iterations) const;
   void announce_end(const Job& job);
-  void forget(const Job& job);
+  void forget(const Running& running);
   void end_watch(const std::string& id);
   void announce_submission();
   std::shared_ptr<Watch> watch_of(const std::string& id) const;

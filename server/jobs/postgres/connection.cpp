@@ -10,6 +10,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* reads_only = "25006";
+
 std::string first_line(const char* text) {
   const std::string_view all = text == nullptr ? "" : text;
   std::string line(all.substr(0, all.find('\n')));
@@ -158,6 +160,8 @@ Rows Connection::answer(bool sent) {
                     state != nullptr ? state : "");
   }
   if (PQstatus(connection) != CONNECTION_OK) is_lost_ = true;
+  // Of several hosts, another one may take writes by now.
+  if (error && error->state == reads_only) is_lost_ = true;
   if (error) throw *std::move(error);
   return *std::move(rows);
 }

@@ -14,7 +14,8 @@ constexpr auto between_tries = 500ms;  // to reach a database that could not be 
 std::unique_ptr<Connection> ConnectionPool::take() {
   {
     std::unique_lock lock(mutex_);
-    free_.wait(lock, [&] { return used_ < most_; });
+    if (!free_.wait_for(lock, patience, [&] { return used_ < most_; }))
+      throw Error("all connections to it are in use");
     while (!idle_.empty()) {
       std::unique_ptr<Connection> connection = std::move(idle_.back());
       idle_.pop_back();

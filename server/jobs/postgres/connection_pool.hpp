@@ -15,8 +15,8 @@ class ConnectionPool {
  public:
   ConnectionPool(std::string url, std::size_t most) : url_(std::move(url)), most_(most) {}
 
-  /// Does something with a connection that nobody else uses meanwhile. Throws Error, at once if the
-  /// database could not be reached a moment ago.
+  /// Does something with a connection that nobody else uses meanwhile. Throws Error: at once if the database
+  /// could not be reached a moment ago, and if others use all of them for too long.
   template <class Step>
   auto with(const Step& step) {
     Borrowed borrowed(*this);

@@ -31,7 +31,11 @@ class Database {
                 const Step& step) const {
     try {
       if (own && own->is_lost()) own.reset();
-      if (!own) own.emplace(url_, patience).script(beginning);
+      if (!own) {
+        Connection fresh(url_, patience);
+        fresh.script(beginning);
+        own.emplace(std::move(fresh));
+      }
       return step(*own);
     } catch (const Error& error) {
       rethrow_as_unavailable(error);
@@ -46,13 +50,21 @@ class Database {
   /// Why the database cannot be written for now. Tries it.
   std::optional<std::string> trouble() const;
 
+  /// Runs one statement of those who watch over the service, on a connection of theirs. They do not wait for
+  /// long; and while one of them asks, the others get nothing, so that a database that does not answer holds
+  /// up one thread.
+  std::optional<Rows> glance(const std::string& sql) const;
+
  private:
   [[noreturn]] void rethrow_as_unavailable(const Error& error) const;
+  std::string known_trouble() const;
 
   const std::string url_;
   mutable ConnectionPool pool_;
   mutable std::mutex trouble_mutex_;
   mutable std::string trouble_;  ///< that was logged, and may have passed
+  mutable std::mutex glancing_;
+  mutable std::optional<Connection> glance_;  ///< for glance()
 };
 
 }  // namespace signorini::server::postgres

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <map>
-#include <thread>
+
+#include <time.h>
 
 #include <spdlog/spdlog.h>
 
 #include "server/jobs/postgres/rows.hpp"
+#include "server/jobs/postgres/turns.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "server/log.hpp"
 
@@ -36,6 +38,14 @@ std::string hexadecimal(const std::string& bytes) {
   return text;
 }
 
+/// By a clock that nobody sets, and that goes on while the machine sleeps.
+std::chrono::milliseconds steady_now() {
+  timespec time{};
+  clock_gettime(CLOCK_BOOTTIME, &time);
+  return std::chrono::seconds(time.tv_sec) +
+         std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::nanoseconds(time.tv_nsec));
+}
+
 template <class Range, class Projection>
 std::vector<std::string> texts(const Range& range, const Projection& projection) {
   std::vector<std::string> all;
@@ -55,29 +65,33 @@ void append_piece(const std::vector<Iteration>& piece, std::int64_t first, std::
 }  // namespace
 
 std::optional<Claim> Leases::claim(const Wish& wish) {
-  // Each owner has so many jobs of weight 1 in there, which is how long another one waits at most.
-  constexpr double turns_of_preference = 16;
-  static const std::string fits =
-      "memory <= $2 AND (share IS NULL OR queue.memory + (SELECT coalesce(sum(leases.memory), 0) FROM leases "
-      "WHERE leases.owner = queue.owner) <= share)";
+  static const std::string fits = "memory <= $2 AND " + within_share;
   // Who comes at the same time takes the next one. One statement, so that nobody can be stopped within it.
   static const std::string sql =
-      "WITH next AS (DELETE FROM queue WHERE job = coalesce("
-      "(SELECT job FROM queue WHERE mark = ANY($3::bigint[]) AND mark <> 0 AND "
-      "turn < (SELECT min(turn) FROM queue) + $4::float8 AND " +
-      fits + " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), (SELECT job FROM queue WHERE " + fits +
-      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED)) RETURNING job), "
+      "WITH first AS (SELECT job, turn FROM queue WHERE job = coalesce("
+      "(SELECT job FROM queue WHERE mark = ANY($3::bigint[]) AND mark <> 0 AND turn < " +
+      turn_now + " + $5::float8 AND " + fits +
+      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), "
+      "(SELECT job FROM queue WHERE " +
+      fits +
+      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED))), "
+      // Else what is large would wait for as long as there is anything small.
+      "next AS (DELETE FROM queue USING first WHERE queue.job = first.job AND NOT EXISTS "
+      "(SELECT FROM queue WHERE turn < first.turn - $5::float8 AND memory > $2 AND memory <= $4::float8 "
+      "AND " +
+      within_share +
+      ") RETURNING queue.job), "
       "claimed AS (UPDATE jobs SET status = 'running', started = clock_ms(), attempt = attempt + 1 FROM next "
       "WHERE id = next.job RETURNING " +
       job_columns +
-      ", attempt, memory), "
+      ", attempt, memory, share), "
       "lease AS (INSERT INTO leases (job, attempt, until, owner, memory) "
       "SELECT id, attempt, started + $1::bigint, owner, memory FROM claimed) "
       "SELECT " +
-      job_columns + ", attempt, text, memory FROM claimed LEFT JOIN problems ON job = id";
+      job_columns + ", attempt, text, memory, share FROM claimed LEFT JOIN problems ON job = id";
   const Values values(lease_.count(), wish.memory,
                       texts(wish.operators, [](std::int64_t mark) { return std::to_string(mark); }),
-                      turns_of_preference);
+                      wish.most_memory, turns_of_passing);
   Rows rows = database_.run(sql, values);
   // Others, who came later, may have taken all that was there when this one looked, but not what they saw
   // only.
@@ -89,13 +103,48 @@ std::optional<Claim> Leases::claim(const Wish& wish) {
   Claim claim{job_of(rows, 0), problem_of(rows.text(0, job_column_count + 1)),
               static_cast<std::uint64_t>(rows.integer(0, job_column_count)),
               rows.number(0, job_column_count + 2)};
+  const int share = job_column_count + 3;
+  if (!rows.is_null(0, share) && !keep_within(claim, rows.number(0, share))) return std::nullopt;
   return claim;
+}
+
+/// Gives a claim back if the claims of its owner take more than his share together: those of others who came
+/// at the same time were not seen. One after the other looks, so that not all of them give back.
+bool Leases::keep_within(const Claim& claim, double share) {
+  return database_.with([&](Connection& connection) {
+    Transaction transaction(connection);
+    connection.run("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' share of ' || $1))",
+                   Values(claim.job.owner));
+    const Rows taken = connection.run("SELECT sum(memory) > $2 FROM leases WHERE owner = $1",
+                                      Values(claim.job.owner, share));
+    const bool is_beyond = !taken.is_null(0, 0) && taken.boolean(0, 0);
+    const bool is_kept = !is_beyond || !give_back(connection, claim);
+    transaction.commit();
+    return is_kept;
+  });
+}
+
+bool Leases::give_back(Connection& connection, const Claim& claim) {
+  static const std::string sql =
+      "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 AND NOT cancel_asked RETURNING job), "
+      "pieces AS (DELETE FROM results USING held WHERE results.job = held.job), "
+      "again AS (UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 FROM held "
+      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share, mark) "
+      "INSERT INTO queue SELECT * FROM again RETURNING job";
+  return !connection.run(sql, Values(claim.job.id, claim.attempt)).empty();
+}
+
+bool Leases::give_back(const Claim& claim) {
+  if (database_.with([&](Connection& connection) { return give_back(connection, claim); })) return true;
+  const Rows held = database_.run("SELECT FROM leases WHERE job = $1 AND attempt = $2",
+                                  Values(claim.job.id, claim.attempt));
+  if (held.empty()) refuse();
+  return false;
 }
 
 std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
   std::vector<Standing> standings(heartbeats.size(), Standing::lost);
   if (heartbeats.empty()) return standings;
-  constexpr std::chrono::seconds patience{5};
   std::map<std::string, std::size_t> places;
   const auto each = [&](const auto& of) { return texts(heartbeats, of); };
   for (std::size_t i = 0; i < heartbeats.size(); ++i) places[heartbeats[i].job] = i;
@@ -118,9 +167,7 @@ std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
       "iterations = excluded.iterations) "
       "SELECT beats.job, cancel_asked, jobs.attempt = beats.attempt AND finished IS NOT NULL "
       "FROM beats LEFT JOIN renewed USING (job) LEFT JOIN jobs ON id = beats.job";
-  // A renewal that a crash of the database forgets is repeated a moment later.
-  const Rows rows = database_.with_own(heart_, patience, "SET synchronous_commit = off",
-                                       [&](Connection& connection) { return connection.run(sql, values); });
+  const Rows rows = with_heart([&](Connection& connection) { return connection.run(sql, values); });
   for (int row = 0; row < rows.size(); ++row) {
     Standing& standing = standings[places.at(rows.text(row, 0))];
     if (!rows.is_null(row, 1))
@@ -131,7 +178,24 @@ std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
   return standings;
 }
 
+/// Whether the clock of the database was set forward a moment ago: nobody has had the time to renew by it.
+bool Leases::clock_jumped() {
+  using Milliseconds = std::chrono::milliseconds;
+  const auto asked = steady_now();
+  const Milliseconds shown(
+      with_heart([](Connection& connection) { return connection.run("SELECT clock_ms()"); }).integer(0, 0));
+  const auto answered = steady_now();
+  if (lead_ && shown - answered > *lead_ + lease_ / 2) {
+    spdlog::warn("the clock of the database has jumped by {} s; claims are held for as long as ever",
+                 (shown - answered - *lead_).count() / 1000);
+    calm_until_ = answered + lease_;
+  }
+  lead_ = shown - asked;
+  return answered < calm_until_;
+}
+
 void Leases::rescue() {
+  if (clock_jumped()) return;
   static const std::string cancelled =
       pack_verdict(verdict_of(cancelled_ending("The solve was cancelled before it ended.")));
   static const std::string used_up = pack_verdict(verdict_of(attempts_used_up()));
@@ -142,6 +206,7 @@ void Leases::rescue() {
       "LIMIT 100 FOR UPDATE SKIP LOCKED), "
       "taken AS (DELETE FROM leases USING silent WHERE leases.job = silent.job "
       "RETURNING leases.job, leases.attempt, cancel_asked), "
+      "pieces AS (DELETE FROM results USING taken WHERE results.job = taken.job), "
       "judged AS (SELECT id, CASE WHEN cancel_asked THEN 'cancelled' "
       "WHEN taken.attempt - given_back >= $2::bigint THEN 'failed' ELSE 'queued' END AS verdict "
       "FROM taken JOIN jobs ON id = taken.job), "
@@ -154,19 +219,22 @@ void Leases::rescue() {
       "status = "
       "'queued') "
       "SELECT id, status FROM moved";
-  const Rows rows =
-      database_.run(sql, Values(lease_.count(), attempts_allowed, Bytes{cancelled}, Bytes{used_up}));
+  const Values values(lease_.count(), attempts_allowed, Bytes{cancelled}, Bytes{used_up});
+  const Rows rows = with_heart([&](Connection& connection) { return connection.run(sql, values); });
   for (int row = 0; row < rows.size(); ++row) {
     const LogField job("job", rows.text(row, 0));
     spdlog::warn("its runner does not renew its claim; it is {} now", rows.text(row, 1));
   }
 }
 
-std::vector<Found> Leases::look(std::span<const Sought> sought) const {
+std::vector<Found> Leases::look(std::span<const Sought> asked) const {
   std::vector<Found> all;
-  const Values values(texts(sought, [](const Sought& each) { return each.job; }),
-                      texts(sought, [](const Sought& each) { return std::to_string(each.attempt); }),
-                      texts(sought, [](const Sought& each) { return std::to_string(each.known); }));
+  std::vector<Sought> sought, followed;
+  std::ranges::copy_if(asked, std::back_inserter(sought), may_be_an_id, &Sought::job);
+  std::ranges::copy_if(sought, std::back_inserter(followed), &Sought::iterations);
+  const Values values(texts(followed, [](const Sought& each) { return each.job; }),
+                      texts(followed, [](const Sought& each) { return std::to_string(each.attempt); }),
+                      texts(followed, [](const Sought& each) { return std::to_string(each.known); }));
   static const std::string of_jobs =
       "SELECT id, status, jobs.attempt, started, state FROM jobs LEFT JOIN leases "
       "ON leases.job = id AND leases.attempt = jobs.attempt WHERE id = ANY($1::text[])";
@@ -193,6 +261,7 @@ std::vector<Found> Leases::look(std::span<const Sought> sought) const {
       places[found.job] = all.size();
       all.push_back(std::move(found));
     }
+    if (followed.empty()) return true;
     const Rows pieces = connection.run(of_iterations, values);
     for (int row = 0; row < pieces.size(); ++row) {
       const auto place = places.find(pieces.text(row, 0));

@@ -22,15 +22,33 @@ class Leases : public Fleet {
   bool wait_for_hint(std::chrono::milliseconds time) override;
   std::uint64_t stale_writes() const override { return stale_writes_; }
 
+  /// As JobStore::give_back().
+  bool give_back(const Claim& claim);
+
   /// Something came under a claim that was lost.
   void refuse() { ++stale_writes_; }
 
  private:
+  /// On a connection that waits for nobody: those of others may all be in use. What a crash of the database
+  /// forgets of it is done again a moment later.
+  template <class Step>
+  Rows with_heart(const Step& step) {
+    const auto patience = std::chrono::ceil<std::chrono::seconds>(lease_ / 2);
+    return database_.with_own(heart_, patience, "SET synchronous_commit = off; SET lock_timeout = '1s'",
+                              step);
+  }
+
+  bool keep_within(const Claim& claim, double share);
+  static bool give_back(Connection& connection, const Claim& claim);
+  bool clock_jumped();
+
   const Database& database_;
   const std::chrono::milliseconds lease_;
   std::atomic<std::uint64_t> stale_writes_ = 0;
-  std::optional<Connection> heart_;     ///< for renew(), which waits for nobody
-  std::optional<Connection> listener_;  ///< for wait_for_hint()
+  std::optional<Connection> heart_;                ///< for renew() and rescue()
+  std::optional<Connection> listener_;             ///< for wait_for_hint()
+  std::optional<std::chrono::milliseconds> lead_;  ///< of the clock of the database before one that is steady
+  std::chrono::milliseconds calm_until_{};         ///< by that one, nothing is rescued
 };
 
 }  // namespace signorini::server::postgres

@@ -157,6 +157,14 @@ CREATE CONSTRAINT TRIGGER tally AFTER INSERT OR DELETE OR UPDATE OF status, byte
 ALTER TABLE jobs ADD COLUMN mark bigint NOT NULL DEFAULT 0;
 ALTER TABLE queue ADD COLUMN mark bigint NOT NULL DEFAULT 0;
 CREATE INDEX queue_by_mark ON queue (mark, turn) WHERE mark <> 0;
+)sql",
+                           // That a clock which is set drops nothing.
+                           R"sql(
+CREATE TABLE retention_clock (
+  seen bigint NOT NULL,                     -- by clock_ms() at the last sweep
+  hold_until bigint NOT NULL                -- before that nothing is dropped by age
+) WITH (fillfactor = 10, autovacuum_vacuum_scale_factor = 0, autovacuum_vacuum_threshold = 2000);
+INSERT INTO retention_clock VALUES (clock_ms(), 0);
 )sql"};
 
 int version_of(Connection& connection) {
@@ -186,6 +194,8 @@ void migrate(Connection& connection) {
   connection.script("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' migration'))");
   const int version = version_of(connection);
   require_known(version);
+  // Services of an earlier version go on, and everybody would wait behind a lock that has to be waited for.
+  connection.script("SET LOCAL lock_timeout = '5s'");
   if (version == 0)
     connection.script(
         "CREATE TABLE schema_version (version integer NOT NULL); INSERT INTO schema_version VALUES (0)");

@@ -1,5 +1,8 @@
 #include "server/jobs/postgres/rows.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 #include "server/jobs/stored_form.hpp"
 
 namespace signorini::server::postgres {
@@ -44,6 +47,10 @@ std::optional<Batch> batch_of(const Rows& rows, int row) try {
   return batch;
 } catch (const std::exception&) {
   return std::nullopt;
+}
+
+bool may_be_an_id(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c); });
 }
 
 std::shared_ptr<const std::string> problem_of(const std::string& packed) {

@@ -19,6 +19,9 @@ extern const std::string batch_columns;
 /// Nothing if it is damaged.
 std::optional<Batch> batch_of(const Rows& rows, int row);
 
+/// No id has anything else in it. What a client takes for one may be bytes that are no text.
+bool may_be_an_id(const std::string& text);
+
 /// A problem as it was sent; null if it is damaged.
 std::shared_ptr<const std::string> problem_of(const std::string& packed);
 

@@ -1,13 +1,14 @@
 #include "server/jobs/postgres/store.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 
 #include <spdlog/spdlog.h>
 
 #include "server/jobs/postgres/rows.hpp"
+#include "server/jobs/postgres/selection.hpp"
 #include "server/jobs/postgres/stored_result.hpp"
+#include "server/jobs/postgres/turns.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "server/log.hpp"
 
@@ -17,44 +18,9 @@ namespace {
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
 constexpr const char* unique_violation = "23505";
 
-/// No id has anything else in it. What a client takes for one may be bytes that are no text.
-bool may_be_an_id(const std::string& text) {
-  return std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c); });
-}
-
-/// The jobs that are asked for, newest first.
-struct Selection {
-  std::string sql;
-  Values values;  ///< of the query, which must outlive them
-};
-
 ListQuery with_title_in_lower_case(ListQuery query) {
   if (query.title) query.title = lower_case(*std::move(query.title));
   return query;
-}
-
-/// The title is in lower case.
-Selection selection(const std::string& columns, const ListQuery& query, std::optional<std::size_t> limit) {
-  Values values;
-  const auto place = [&](const auto& value) {
-    values.add(value);
-    return "$" + std::to_string(values.size());
-  };
-  std::string sql = "SELECT " + columns + " FROM jobs";
-  const std::string owner = query.owner ? " AND owner = " + place(*query.owner) : "";
-  // Tags and titles as bytes, for what a client asks for need not be a text.
-  if (query.tag)
-    sql += " JOIN (SELECT job FROM job_tags WHERE tag = " + place(Bytes{*query.tag}) + owner +
-           ") AS tagged ON job = id";
-  sql += " WHERE true" + owner;
-  if (query.after) sql += std::string(query.tag ? " AND job < " : " AND id < ") + place(*query.after);
-  if (query.status) sql += " AND status = " + place(name(*query.status));
-  if (query.title)
-    sql += " AND position(" + place(Bytes{*query.title}) +
-           R"( IN convert_to(lower(title COLLATE "C"), 'UTF8')) > 0)";
-  sql += query.tag ? " ORDER BY job DESC" : " ORDER BY id DESC";
-  if (limit) sql += " LIMIT " + place(*limit);
-  return {std::move(sql), std::move(values)};
 }
 
 JobCounts counts_in(const Rows& rows) {
@@ -65,20 +31,27 @@ JobCounts counts_in(const Rows& rows) {
   return counts;
 }
 
+/// A title; texts of the database hold no zero byte.
+std::string without_zeros(std::string title) {
+  for (std::size_t zero = title.find('\0'); zero != std::string::npos; zero = title.find('\0', zero))
+    title.replace(zero, 1, "\uFFFD");
+  return title;
+}
+
 /// Puts a job into the queue behind the others of its owner: in turns with other owners, whatever they have
 /// queued before.
 void insert(Connection& connection, const NewJob& job, const std::string& packed) {
   static const std::string sql =
       "WITH new AS (INSERT INTO jobs (id, status, title, tags, owner, batch, trace, created, memory, share, "
       "bytes, mark, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12::float8 + "
-      "greatest("
-      "coalesce((SELECT min(turn) FROM queue), 0), coalesce((SELECT max(turn) FROM queue WHERE owner = $4), "
-      "0))) "
+      "greatest(" +
+      turn_now +
+      ", (SELECT max(turn) FROM queue WHERE owner = $4))) "
       "RETURNING id, turn, owner, batch, memory, share, mark), "
       "waiting AS (INSERT INTO queue SELECT * FROM new) "
       "INSERT INTO problems SELECT id, $13::bytea FROM new";
-  connection.run(sql, Values(job.id, job.title, pack_list(job.tags), job.owner, job.batch, job.trace,
-                             to_milliseconds(job.created), job.predicted_memory, job.share.memory,
+  connection.run(sql, Values(job.id, without_zeros(job.title), pack_list(job.tags), job.owner, job.batch,
+                             job.trace, to_milliseconds(job.created), job.predicted_memory, job.share.memory,
                              packed.size(), job.operator_mark, 1 / job.share.weight, Bytes{packed}));
   if (job.key)
     connection.run("INSERT INTO idempotency_keys (owner, key, job) VALUES ($1, $2, $3)",
@@ -94,25 +67,27 @@ void insert(Connection& connection, const NewJob& job, const std::string& packed
 // --- the life of a job
 
 Store::Store(const std::string& url, const StoreLimits& limits, std::chrono::milliseconds lease)
-    : limits_(limits), database_(url), leases_(database_, lease) {}
+    : limits_(limits), database_(url), leases_(database_, lease), sweeper_(database_, limits) {}
 
 std::string Store::add(NewJob job) {
-  if (job.key) {
-    if (const auto known = earlier(job.owner, *job.key, *job.problem)) return *known;
-  }
-  require_places(1, job.owner, job.share);
+  const auto known = [&] { return job.key ? earlier(job.owner, *job.key, *job.problem) : std::nullopt; };
+  if (const auto id = known()) return *id;
   const std::string packed = pack_text(*job.problem);
   try {
     database_.with([&](Connection& connection) {
       Transaction transaction(connection);
+      require_places(connection, 1, job.owner, job.share);
       insert(connection, job, packed);
       transaction.commit();
       return true;
     });
   } catch (const Error& error) {
+    if (error.state != unique_violation) throw;
     // Somebody else came with the key at the same time.
-    if (error.state != unique_violation || !job.key) throw;
-    if (const auto known = earlier(job.owner, *job.key, *job.problem)) return *known;
+    if (const auto id = known()) return *id;
+    throw;
+  } catch (const QueueFull&) {
+    if (const auto id = known()) return *id;
     throw;
   }
   return job.id;
@@ -120,16 +95,17 @@ std::string Store::add(NewJob job) {
 
 Batch Store::add(NewBatch batch) {
   const auto& [id, title, tags, owner, created, jobs] = batch.batch;
-  if (batch.key) {
-    if (auto known = earlier_batch(owner, *batch.key, batch.digest)) return *std::move(known);
-  }
-  require_places(batch.jobs.size(), owner, batch.jobs.front().share);
+  const auto known = [&] {
+    return batch.key ? earlier_batch(owner, *batch.key, batch.digest) : std::nullopt;
+  };
+  if (auto same = known()) return *std::move(same);
   std::vector<std::string> packed;
   for (const NewJob& job : batch.jobs) packed.push_back(pack_text(*job.problem));
   const std::string content = pack_content(batch.batch);
   try {
     database_.with([&](Connection& connection) {
       Transaction transaction(connection);
+      require_places(connection, batch.jobs.size(), owner, batch.jobs.front().share);
       connection.run("INSERT INTO batches VALUES ($1, $2, $3, $4, $5)",
                      Values(id, owner, to_milliseconds(created), batch.digest, Bytes{content}));
       if (batch.key)
@@ -140,26 +116,32 @@ Batch Store::add(NewBatch batch) {
       return true;
     });
   } catch (const Error& error) {
-    if (error.state != unique_violation || !batch.key) throw;
-    if (auto known = earlier_batch(owner, *batch.key, batch.digest)) return *std::move(known);
+    if (error.state != unique_violation) throw;
+    if (auto same = known()) return *std::move(same);
+    throw;
+  } catch (const QueueFull&) {
+    if (auto same = known()) return *std::move(same);
     throw;
   }
   return batch.batch;
 }
 
-/// Throws QueueFull if no request more may wait, or not so many jobs of the owner. Who comes at the same time
-/// is not seen.
-void Store::require_places(std::size_t jobs, const std::string& owner, const Share& share) const {
+/// Throws QueueFull if no request more may wait, or not so many jobs of the owner. Those of others who come
+/// at the same time are not seen; those of an owner with a share come one after the other.
+void Store::require_places(Connection& connection, std::size_t jobs, const std::string& owner,
+                           const Share& share) const {
   // There are no more requests than jobs, which are counted already. Those that are alone, and each batch
   // once.
-  const Rows full = database_.run(
+  const Rows full = connection.run(
       "SELECT 1 WHERE (SELECT sum(queued) FROM tallies) >= $1::bigint AND (SELECT count(*) FROM "
       "(SELECT DISTINCT CASE batch WHEN '' THEN job ELSE batch END FROM queue) AS requests) >= $1::bigint",
       Values(limits_.queue));
   if (!full.empty()) throw QueueFull(limits_.queue);
   if (!share.queue) return;
-  const Rows beyond = database_.run("SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1",
-                                    Values(owner, jobs, *share.queue));
+  connection.run("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' queue of ' || $1))",
+                 Values(owner));
+  const Rows beyond = connection.run("SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1",
+                                     Values(owner, jobs, *share.queue));
   if (beyond.boolean(0, 0)) throw QueueFull(*share.queue, true);
 }
 
@@ -193,18 +175,16 @@ std::optional<Batch> Store::earlier_batch(const std::string& owner, const std::s
 /// piece, and the end, must find the claim.
 bool Store::finish(const Claim& claim, const Ending& ending) {
   const std::string findings = pack_findings(ending);
+  const std::string verdict = pack_verdict(verdict_of(ending));
   const std::string_view rest = findings;
   const std::size_t before_last = findings.empty() ? 0 : (findings.size() - 1) / piece_bytes;
   for (std::size_t piece = 0; piece < before_last; ++piece) {
     const Rows stored = database_.run(
         "INSERT INTO results SELECT job, attempt, $3::integer, $4::bytea FROM leases WHERE job = $1 AND "
         "attempt = $2 "
-        "ON CONFLICT (job, attempt, piece) DO UPDATE SET bytes = excluded.bytes RETURNING 1",
+        "FOR KEY SHARE ON CONFLICT (job, attempt, piece) DO UPDATE SET bytes = excluded.bytes RETURNING 1",
         Values(claim.job.id, claim.attempt, piece, Bytes{rest.substr(piece * piece_bytes, piece_bytes)}));
-    if (stored.empty()) {
-      leases_.refuse();
-      return false;
-    }
+    if (stored.empty()) return refuse(claim, verdict);
   }
   static const std::string sql =
       "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 RETURNING job), "
@@ -215,9 +195,9 @@ bool Store::finish(const Claim& claim, const Ending& ending) {
       "WHERE $9::integer > 0 "
       "ON CONFLICT (job, attempt, first) DO UPDATE SET count = excluded.count, iterations = "
       "excluded.iterations), "
+      "told_before AS (DELETE FROM progress USING ended WHERE job = id AND (attempt < $2 OR first > 0)), "
       "stale AS (DELETE FROM results USING ended WHERE job = id AND attempt < $2) "
       "SELECT bytes FROM ended";
-  const std::string verdict = pack_verdict(verdict_of(ending));
   const std::vector<Iteration> none;
   const std::vector<Iteration>& history = ending.history ? *ending.history : none;
   const std::string iterations = pack_iterations(history);
@@ -225,25 +205,16 @@ bool Store::finish(const Claim& claim, const Ending& ending) {
       sql, Values(claim.job.id, claim.attempt, name(ending.status), Bytes{verdict}, findings.size(),
                   is_damaged(ending), before_last, Bytes{rest.substr(before_last * piece_bytes)},
                   history.size(), Bytes{iterations}));
-  if (rows.empty()) {
-    leases_.refuse();
-    return false;
-  }
-  ended(static_cast<std::size_t>(rows.integer(0, 0)));
+  if (rows.empty()) return refuse(claim, verdict);
+  sweeper_.ended(static_cast<std::size_t>(rows.integer(0, 0)));
   return true;
 }
 
-bool Store::give_back(const Claim& claim) {
-  const Rows rows = database_.run(
-      "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 AND NOT cancel_asked RETURNING job), "
-      "again AS (UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 FROM held "
-      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share, mark) "
-      "INSERT INTO queue SELECT * FROM again RETURNING job",
-      Values(claim.job.id, claim.attempt));
-  if (!rows.empty()) return true;
-  const Rows held = database_.run("SELECT FROM leases WHERE job = $1 AND attempt = $2",
-                                  Values(claim.job.id, claim.attempt));
-  if (held.empty()) leases_.refuse();
+/// False. It counts, unless it is the end that the job has: then the answer to an earlier try was lost.
+bool Store::refuse(const Claim& claim, const std::string& verdict) {
+  const Rows same = database_.run("SELECT FROM jobs WHERE id = $1 AND attempt = $2 AND verdict = $3",
+                                  Values(claim.job.id, claim.attempt, Bytes{verdict}));
+  if (same.empty()) leases_.refuse();
   return false;
 }
 
@@ -256,7 +227,7 @@ Cancellation Store::cancel(const std::string& id) {
       "RETURNING bytes",
       Values(id, Bytes{verdict}));
   if (!waiting.empty()) {
-    ended(static_cast<std::size_t>(waiting.integer(0, 0)));
+    sweeper_.ended(static_cast<std::size_t>(waiting.integer(0, 0)));
     return Cancellation::ended;
   }
   const Rows running =
@@ -275,68 +246,8 @@ std::size_t Store::remove_ended(std::span<const std::string> ids) {
   return static_cast<std::size_t>(rows.size());
 }
 
-// --- what is kept
-
-/// Counts what has ended, and drops what is beyond the limits: when they may be met, and now and then.
-void Store::ended(std::size_t bytes) {
-  constexpr std::chrono::seconds between_sweeps{1};
-  {
-    const std::lock_guard lock(sweep_mutex_);
-    kept_bytes_ += bytes;
-    const bool is_due = std::chrono::steady_clock::now() - swept_ >= between_sweeps;
-    if (!is_due && kept_bytes_ <= limits_.keep_bytes) return;
-  }
-  try {
-    drop_beyond_limits();
-  } catch (const StoreUnavailable&) {
-    // The job has ended all the same.
-  }
-}
-
 void Store::tidy() {
-  ended(0);
-}
-
-/// One of those who share the database does it at a time, and a little at once.
-void Store::drop_beyond_limits() {
-  const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(limits_.keep).count();
-  static const std::string sql =
-      "WITH oldest AS (SELECT id, finished, bytes, sum(bytes) OVER (ORDER BY finished, id) AS with_older, "
-      "lead(id) OVER (ORDER BY finished, id) IS NULL AS is_last FROM "
-      "(SELECT id, finished, bytes FROM jobs WHERE finished IS NOT NULL ORDER BY finished, id LIMIT 101) AS "
-      "ended), "
-      "kept AS (SELECT sum(ended_bytes) AS bytes FROM tallies), "
-      "gone AS (DELETE FROM jobs USING oldest, kept WHERE jobs.id = oldest.id AND "
-      "(oldest.finished < clock_ms() - $1::bigint OR "
-      "(kept.bytes - with_older + oldest.bytes > $2::bigint AND NOT is_last)) RETURNING jobs.id, jobs.bytes) "
-      "SELECT id, bytes, (SELECT bytes FROM kept)::bigint FROM gone "
-      "UNION ALL SELECT NULL, 0, bytes::bigint FROM kept";
-  database_.with([&](Connection& connection) {
-    Transaction transaction(connection);
-    const Rows chosen =
-        connection.run("SELECT pg_try_advisory_xact_lock(hashtext(current_schema() || ' sweep'))");
-    if (!chosen.boolean(0, 0)) return true;
-    const Rows rows = connection.run(sql, Values(age, limits_.keep_bytes));
-    // Whoever followed a solve has seen its last iterations by then; they are in its result too.
-    connection.run(
-        "DELETE FROM progress WHERE job IN (SELECT job FROM progress JOIN jobs ON id = job "
-        "WHERE finished < clock_ms() - 60000 LIMIT 5000)");
-    transaction.commit();
-    std::size_t kept = 0;
-    for (int row = 0; row < rows.size(); ++row) {
-      if (rows.is_null(row, 0)) {
-        kept += static_cast<std::size_t>(rows.integer(row, 2));
-        continue;
-      }
-      const LogField job("job", rows.text(row, 0));
-      spdlog::info("dropped bytes={}", rows.integer(row, 1));
-      kept -= static_cast<std::size_t>(rows.integer(row, 1));
-    }
-    const std::lock_guard lock(sweep_mutex_);
-    kept_bytes_ = kept;
-    swept_ = std::chrono::steady_clock::now();
-    return true;
-  });
+  sweeper_.ended(0);
 }
 
 // --- readers
@@ -410,6 +321,8 @@ BatchEnds Store::ends_of_batch(const std::string& id, std::int64_t since) const 
     ends.jobs.push_back(rows.text(row, 0));
     ends.latest = std::max(since, rows.integer(row, 1) - longest_statement);
   }
+  // The clock may have been set back meanwhile.
+  if (ends.all && since > 0) return ends_of_batch(id, 0);
   return ends;
 }
 
@@ -429,7 +342,7 @@ std::optional<JobResult> Store::result(const std::string& id) {
       try {
         if (!result.problem) {
           damaged = "problem";
-        } else if (bytes.size() > 0) {
+        } else if (has_result && bytes.size() > 0) {
           unpack_findings(std::bind_front(&StoredResult::read, &bytes), result);
         } else if (has_result) {
           damaged = "result";
@@ -479,7 +392,9 @@ std::optional<JobResult> Store::damaged_result(Connection& connection, const std
 }
 
 std::size_t Store::damaged() const {
-  return static_cast<std::size_t>(database_.run("SELECT sum(damaged)::bigint FROM tallies").integer(0, 0));
+  if (const auto rows = database_.glance("SELECT sum(damaged)::bigint FROM tallies"))
+    damaged_ = static_cast<std::size_t>(rows->integer(0, 0));
+  return damaged_;
 }
 
 }  // namespace signorini::server::postgres

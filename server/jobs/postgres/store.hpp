@@ -1,12 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <mutex>
 #include <string>
 
 #include "server/jobs/fleet.hpp"
 #include "server/jobs/postgres/database.hpp"
 #include "server/jobs/postgres/leases.hpp"
+#include "server/jobs/postgres/sweeper.hpp"
 #include "server/jobs/store.hpp"
 
 namespace signorini::server::postgres {
@@ -29,7 +30,7 @@ class Store : public JobStore {
                                      const std::string& digest) override;
   std::optional<Claim> claim() override { return leases_.claim({}); }
   bool finish(const Claim& claim, const Ending& ending) override;
-  bool give_back(const Claim& claim) override;
+  bool give_back(const Claim& claim) override { return leases_.give_back(claim); }
   Cancellation cancel(const std::string& id) override;
   bool remove_ended(const std::string& id) override;
   std::size_t remove_ended(std::span<const std::string> ids) override;
@@ -49,20 +50,17 @@ class Store : public JobStore {
   Fleet* fleet() override { return &leases_; }
 
  private:
-  void require_places(std::size_t jobs, const std::string& owner, const Share& share) const;
+  void require_places(Connection& connection, std::size_t jobs, const std::string& owner,
+                      const Share& share) const;
+  bool refuse(const Claim& claim, const std::string& verdict);
   static std::optional<JobResult> damaged_result(Connection& connection, const std::string& id,
                                                  const std::string& what);
-  void ended(std::size_t bytes);
-  void drop_beyond_limits();
 
   const StoreLimits limits_;
   const Database database_;
   Leases leases_;
-
-  std::mutex sweep_mutex_;
-  std::chrono::steady_clock::time_point swept_{};
-  std::size_t kept_bytes_ =
-      0;  ///< of what has ended, as was counted last, and what has ended here since then
+  Sweeper sweeper_;
+  mutable std::atomic<std::size_t> damaged_ = 0;  ///< as was counted last
 };
 
 }  // namespace signorini::server::postgres
