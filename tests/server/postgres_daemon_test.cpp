@@ -152,7 +152,11 @@ TEST(PostgresFleet, WithoutTheDatabaseItWaitsAndSaysSo) {
   const std::string id = id_in(replica.post(endless(replica)));
   ASSERT_TRUE(becomes([&] { return replica.status_of(id).at("status") == "running"; }));
   server.end(SIGQUIT);
-  EXPECT_EQ(replica.post(problem)->status, 503);
+  const auto refused = replica.post(problem);
+  EXPECT_EQ(refused->status, 503);
+  // Where the database is concerns no client; the log says it.
+  EXPECT_NE(refused->body.find("the database cannot be reached"), std::string::npos) << refused->body;
+  EXPECT_NE(replica.process().standard_error().find("the database cannot be used: "), std::string::npos);
   EXPECT_EQ(replica.get("/readyz")->status, 503);
   EXPECT_EQ(replica.get("/healthz")->status, 200);
   EXPECT_TRUE(becomes([&] {

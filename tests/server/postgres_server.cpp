@@ -54,7 +54,8 @@ std::string place() {
 
 }  // namespace
 
-PostgresServer::PostgresServer() : directory_(place()) {
+PostgresServer::PostgresServer(std::vector<std::string> settings, int port)
+    : settings_(std::move(settings)), port_(port), directory_(place()) {
   if (::mkdtemp(directory_.data()) == nullptr) throw std::runtime_error("cannot make " + directory_);
   if (const passwd* const user = ::getuid() == 0 ? ::getpwnam("postgres") : nullptr)
     if (::chown(directory_.c_str(), user->pw_uid, user->pw_gid) != 0)
@@ -74,7 +75,7 @@ PostgresServer::~PostgresServer() {
 }
 
 std::string PostgresServer::url(const std::string& database) const {
-  return "postgresql://signorini@/" + database + "?host=" + directory_;
+  return "postgresql://signorini@/" + database + "?host=" + directory_ + "&port=" + std::to_string(port_);
 }
 
 std::string PostgresServer::new_database(const std::string& name) {
@@ -87,13 +88,14 @@ void PostgresServer::drop_database(const std::string& name) {
 }
 
 void PostgresServer::start() {
+  std::vector<std::string> command{programs + "/postgres", "-D", directory_ + "/data", "-k", directory_, "-p",
+                                   std::to_string(port_)};
+  for (const char* setting : {"listen_addresses=", "shared_buffers=32MB", "max_connections=100", "fsync=off"})
+    command.insert(command.end(), {"-c", setting});
+  for (const std::string& setting : settings_) command.insert(command.end(), {"-c", setting});
   for (int i = 0; i < 1000; ++i) {
     // One that was killed leaves processes, beside which no new one starts for a moment.
-    if (pid_ < 0 || ::waitpid(pid_, nullptr, WNOHANG) == pid_)
-      pid_ = spawn(
-          {programs + "/postgres", "-D", directory_ + "/data", "-k", directory_, "-c",
-           "listen_addresses=", "-c", "shared_buffers=32MB", "-c", "max_connections=100", "-c", "fsync=off"},
-          directory_ + "/log");
+    if (pid_ < 0 || ::waitpid(pid_, nullptr, WNOHANG) == pid_) pid_ = spawn(command, directory_ + "/log");
     try {
       const postgres::Connection connection(url("postgres"), 10s);
       return;
