@@ -1,5 +1,7 @@
 #include "server/metrics/metrics.hpp"
 
+#include <algorithm>
+
 #include <prometheus/counter.h>
 #include <prometheus/histogram.h>
 
@@ -64,7 +66,9 @@ void Metrics::replied(const Request& request, const Response& response, std::chr
 
 void Metrics::ended(const Job& job, const Ending& ending) {
   runs_.Add({{"status", name(ending.status)}}).Increment();
-  if (job.started) queue_seconds_.Observe(std::chrono::duration<double>(*job.started - job.created).count());
+  // In a fleet the two are by clocks of two machines.
+  if (job.started)
+    queue_seconds_.Observe(std::max(0., std::chrono::duration<double>(*job.started - job.created).count()));
   if (!ending.solution) return;
   const Timings& timings = ending.solution->summary.timings;
   for (const auto& [phase, seconds] : {std::pair{"mesh", timings.mesh},
