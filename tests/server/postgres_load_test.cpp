@@ -116,7 +116,7 @@ TEST(PostgresLoad, ClaimsTakeTheSameTimeWithAMillionEndedJobs) {
 TEST(PostgresLoad, AnOwnerOfATenthOfTheLoadWaitsForItsShareAlone) {
   const std::string url = empty_database();
   postgres::Store store(url, limits);
-  const int backlog = long_tests() ? 1000 : 60, moments = long_tests() ? 2000 : 200;
+  const int backlog = long_tests() ? 1000 : 60, moments = long_tests() ? 2000 : 80;
   const auto post = [&](const std::string& owner, int number) {
     NewJob job = new_job(numbered(owner, number));
     job.owner = owner;
@@ -189,7 +189,7 @@ std::size_t count_in(Replica& replica, const std::string& metric) {
 }
 
 TEST(PostgresLoad, RepeatedMeshesFindTheirFactors) {
-  const int meshes = long_tests() ? 10 : 3, repeats = long_tests() ? 100 : 12;
+  const int meshes = long_tests() ? 10 : 2, repeats = long_tests() ? 100 : 10;
   const std::string url = empty_database();
   Replica front(url, {"--role", "front", "--queue-limit", "10000"});
   std::vector<std::unique_ptr<Replica>> replicas;

@@ -43,6 +43,11 @@ std::unique_ptr<Connection> ConnectionPool::connect() {
   }
 }
 
+void ConnectionPool::try_again() {
+  const std::lock_guard lock(mutex_);
+  refused_until_ = {};
+}
+
 void ConnectionPool::give_back(std::unique_ptr<Connection> connection) {
   const std::lock_guard lock(mutex_);
   --used_;

@@ -23,6 +23,9 @@ class ConnectionPool {
     return step(*borrowed.connection);
   }
 
+  /// The database was reached by another way: the next step tries it.
+  void try_again();
+
  private:
   struct Borrowed {
     explicit Borrowed(ConnectionPool& of_pool) : pool(of_pool), connection(of_pool.take()) {}

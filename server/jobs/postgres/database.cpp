@@ -87,6 +87,7 @@ std::optional<std::string> Database::trouble() const {
   } catch (const StoreUnavailable& unavailable) {
     return unavailable.what();
   }
+  pool_.try_again();
   const std::lock_guard lock(trouble_mutex_);
   if (!trouble_.empty()) spdlog::info("the database can be used again");
   trouble_.clear();
