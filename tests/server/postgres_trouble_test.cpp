@@ -62,7 +62,7 @@ TEST(PostgresTrouble, ClaimsAreRenewedAndRescuedWhileAllOtherConnectionsAreInUse
     store.fleet()->rescue();
     return standing;
   });
-  EXPECT_EQ(heart.wait_for(2s), std::future_status::ready);
+  EXPECT_EQ(heart.wait_for(sanitized ? 20s : 2s), std::future_status::ready);
   EXPECT_FALSE(store.trouble());
   locker.script("COMMIT");
   EXPECT_EQ(heart.get(), Standing::held);
@@ -87,13 +87,14 @@ TEST(PostgresTrouble, ProbesDoNotWaitForADatabaseThatDoesNotAnswer) {
   std::this_thread::sleep_for(100ms);
   const auto asked = Clock::now();
   EXPECT_EQ(replica.get("/healthz")->status, 200);
-  EXPECT_LT(Clock::now() - asked, 1s);
+  EXPECT_LT(Clock::now() - asked, sanitized ? 5s : 1s);
   int refused = 0;
   for (auto& probe : probes) {
-    EXPECT_EQ(probe.wait_for(5s), std::future_status::ready);
+    EXPECT_EQ(probe.wait_for(sanitized ? 20s : 5s), std::future_status::ready);
     refused += probe.get() == 503;
   }
-  EXPECT_EQ(refused, 1);
+  // One that comes when another has been refused asks again.
+  EXPECT_GE(refused, 1);
 }
 
 TEST(PostgresTrouble, OneThatIsCutOffEndsItsSolvesAndOthersTakeThem) {
