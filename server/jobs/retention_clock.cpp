@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 
 #include <spdlog/spdlog.h>
+
+#include "server/jobs/boot_time.hpp"
 
 namespace signorini::server {
 namespace {
@@ -14,19 +15,14 @@ constexpr std::int64_t most_between_services = 24 * 60 * minute;
 constexpr std::int64_t hold = 10 * minute;
 constexpr std::int64_t jump = minute;  // more than corrections by NTP
 
-std::int64_t read_clock(clockid_t clock) {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return std::int64_t{time.tv_sec} * 1000 + time.tv_nsec / 1'000'000;
-}
-
 std::int64_t wall() {
-  return read_clock(CLOCK_REALTIME);
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
-/// Goes on while the machine sleeps, too.
 std::int64_t steady() {
-  return read_clock(CLOCK_BOOTTIME);
+  return boot_time().count();
 }
 
 }  // namespace

@@ -26,4 +26,16 @@ inline nlohmann::json paper_problem(int divisions) {
   return problem;
 }
 
+/// The paper's problem in steps so small that it iterates for longer than any test.
+inline nlohmann::json endless_problem() {
+  nlohmann::json problem = example("paper-nonconforming");
+  problem["mesh"]["divisions"] = {80, 80};
+  problem["solver"] = {{"method", "uzawa"},
+                       {"rho", 1e-6},
+                       {"augmentation", 1},
+                       {"tolerance", 1e-14},
+                       {"max_iterations", 1'000'000}};
+  return problem;
+}
+
 }  // namespace signorini::server

@@ -8,6 +8,8 @@
 #include <set>
 #include <thread>
 
+#include "becomes.hpp"
+#include "example_problems.hpp"
 #include "postgres_server.hpp"
 #include "replica.hpp"
 
@@ -21,31 +23,9 @@ std::string example(Replica& replica, const std::string& name) {
   return replica.get("/v1/examples/" + name)->body;
 }
 
-/// A problem that iterates for longer than any test.
-std::string endless(Replica& replica) {
-  json problem = json::parse(example(replica, "paper-nonconforming"));
-  problem["mesh"]["divisions"] = {80, 80};
-  problem["solver"] = {{"method", "uzawa"},
-                       {"rho", 1e-6},
-                       {"augmentation", 1},
-                       {"tolerance", 1e-14},
-                       {"max_iterations", 1'000'000}};
-  return problem.dump();
-}
-
 std::string id_in(const httplib::Result& reply) {
   EXPECT_EQ(reply->status, 202) << reply->body;
   return json::parse(reply->body).at("id");
-}
-
-template <class Condition>
-bool becomes(const Condition& condition, std::chrono::seconds time = 20s) {
-  for (const auto until = std::chrono::steady_clock::now() + time;
-       std::chrono::steady_clock::now() < until;) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(20ms);
-  }
-  return false;
 }
 
 TEST(PostgresFleet, EachAnswersForAll) {
@@ -63,7 +43,7 @@ TEST(PostgresFleet, EachAnswersForAll) {
 TEST(PostgresFleet, EventsProgressAndCancellationCrossIt) {
   const std::string url = empty_database();
   Replica front(url, {"--role", "front"}), worker(url, {"--role", "worker"});
-  const std::string id = id_in(front.post(endless(front)));
+  const std::string id = id_in(front.post(endless_problem().dump()));
   ASSERT_TRUE(becomes([&] { return front.status_of(id).at("progress").at("iteration") > 0; }));
   EXPECT_EQ(front.status_of(id).at("status"), "running");
   const json listed = json::parse(front.get("/v1/solves")->body).at("solves").at(0);
@@ -97,7 +77,7 @@ TEST(PostgresFleet, WhatADyingOneRunsAnotherSolves) {
   const std::string url = empty_database();
   Replica front(url, {"--role", "front"});
   auto first = std::make_unique<Replica>(url, std::vector<std::string>{"--role", "worker"});
-  const std::string id = id_in(front.post(endless(front)));
+  const std::string id = id_in(front.post(endless_problem().dump()));
   ASSERT_TRUE(becomes([&] { return front.status_of(id).at("status") == "running"; }));
   const std::string started = front.status_of(id).at("started_at");
   first->process().signal(SIGKILL);
@@ -115,7 +95,7 @@ TEST(PostgresFleet, WhatADyingOneRunsAnotherSolves) {
 TEST(PostgresFleet, OneThatSleepsLongerThanItsClaimWritesNothingMore) {
   const std::string url = empty_database();
   Replica front(url, {"--role", "front"}), sleeper(url, {"--role", "worker", "--workers", "1"});
-  const std::string id = id_in(front.post(endless(front)));
+  const std::string id = id_in(front.post(endless_problem().dump()));
   ASSERT_TRUE(becomes([&] { return front.status_of(id).at("status") == "running"; }));
   sleeper.process().signal(SIGSTOP);
   Replica other(url, {"--role", "worker", "--workers", "1"});
@@ -136,7 +116,7 @@ TEST(PostgresFleet, OneThatSleepsLongerThanItsClaimWritesNothingMore) {
 TEST(PostgresFleet, OneThatStopsLeavesItsSolvesToOthers) {
   const std::string url = empty_database();
   Replica front(url, {"--role", "front"}), first(url, {"--role", "worker", "--drain-seconds", "1"});
-  const std::string id = id_in(front.post(endless(front)));
+  const std::string id = id_in(front.post(endless_problem().dump()));
   ASSERT_TRUE(becomes([&] { return front.status_of(id).at("status") == "running"; }));
   first.process().signal(SIGTERM);
   EXPECT_EQ(first.process().wait(10s), 0);
@@ -149,7 +129,7 @@ TEST(PostgresFleet, WithoutTheDatabaseItWaitsAndSaysSo) {
   PostgresServer server;
   Replica replica(server.new_database("jobs"));
   const std::string problem = example(replica, "paper-nonconforming");
-  const std::string id = id_in(replica.post(endless(replica)));
+  const std::string id = id_in(replica.post(endless_problem().dump()));
   ASSERT_TRUE(becomes([&] { return replica.status_of(id).at("status") == "running"; }));
   server.end(SIGQUIT);
   const auto refused = replica.post(problem);
@@ -198,7 +178,7 @@ TEST(PostgresFleet, IsBackedUpWhileItRunsAndBroughtBack) {
     Replica replica(url, {"--workers", "1"});
     const auto result = replica.post(example(replica, "paper-nonconforming"), "?wait=30&fields=summary");
     solved = json::parse(result->body).at("id");
-    running = id_in(replica.post(endless(replica)));
+    running = id_in(replica.post(endless_problem().dump()));
     ASSERT_TRUE(becomes([&] { return replica.status_of(running).at("status") == "running"; }));
     const TemporaryDirectory directory;
     const std::string dump = directory.path() + "/solves.dump", programs = POSTGRES_PROGRAMS;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <thread>
 
+#include "becomes.hpp"
 #include "postgres_server.hpp"
 #include "scripted_solve.hpp"
 #include "server/jobs/postgres/store.hpp"
@@ -17,15 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto lease = 200ms;
-
-template <class Condition>
-bool becomes(const Condition& condition) {
-  for (int i = 0; i < 1000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(5ms);
-  }
-  return false;
-}
 
 /// The one that has lost it does not hear that it is to end, and ends while the other one solves.
 TEST(PostgresScheduler, AJobMayComeBackToTheProcessThatLostIt) {
@@ -43,19 +35,21 @@ TEST(PostgresScheduler, AJobMayComeBackToTheProcessThatLostIt) {
       2);
   scheduler.submit(new_job("a", problem_titled("deaf")));
   const auto watch = scheduler.watch("a");
-  ASSERT_TRUE(becomes([&] { return begun == 1; }));
+  ASSERT_TRUE(becomes([&] { return begun == 1; }, 5s));
   postgres::Connection connection(url, 5s);
-  ASSERT_TRUE(becomes([&] {
-    if (begun == 1) connection.script("UPDATE leases SET until = 0");
-    other.fleet()->rescue();
-    return begun == 2;
-  }));
+  ASSERT_TRUE(becomes(
+      [&] {
+        if (begun == 1) connection.script("UPDATE leases SET until = 0");
+        other.fleet()->rescue();
+        return begun == 2;
+      },
+      5s));
   let_go = 1;
   std::this_thread::sleep_for(3 * lease);
   EXPECT_EQ(begun, 2);
   EXPECT_FALSE(watch->over());
   let_go = 2;
-  EXPECT_TRUE(becomes([&] { return store.find("a")->status == JobStatus::succeeded; }));
+  EXPECT_TRUE(becomes([&] { return store.find("a")->status == JobStatus::succeeded; }, 5s));
   EXPECT_EQ(connection.run("SELECT attempt FROM jobs").integer(0, 0), 2);
   let_go = 9;
 }

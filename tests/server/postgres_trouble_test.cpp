@@ -10,6 +10,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "becomes.hpp"
+#include "example_problems.hpp"
 #include "long_tests.hpp"
 #include "postgres_server.hpp"
 #include "replica.hpp"
@@ -28,15 +30,6 @@ using Clock = std::chrono::steady_clock;
 
 const StoreLimits limits{1000, plenty, std::chrono::hours(1)};
 constexpr auto lease = 300ms;
-
-template <class Condition>
-bool becomes(const Condition& condition, std::chrono::seconds time = 20s) {
-  for (const auto until = Clock::now() + time; Clock::now() < until;) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(20ms);
-  }
-  return false;
-}
 
 /// The URL of the same database.
 std::string through(const TcpProxy& proxy, const std::string& url) {
@@ -103,14 +96,7 @@ TEST(PostgresTrouble, OneThatIsCutOffEndsItsSolvesAndOthersTakeThem) {
   const std::string direct = empty_database();
   Replica front(direct, {"--role", "front"});
   Replica cut(through(proxy, direct), {"--role", "worker", "--workers", "1"});
-  json endless = json::parse(front.get("/v1/examples/paper-nonconforming")->body);
-  endless["mesh"]["divisions"] = {80, 80};
-  endless["solver"] = {{"method", "uzawa"},
-                       {"rho", 1e-6},
-                       {"augmentation", 1},
-                       {"tolerance", 1e-14},
-                       {"max_iterations", 1'000'000}};
-  const std::string id = json::parse(front.post(endless.dump())->body).at("id");
+  const std::string id = json::parse(front.post(endless_problem().dump())->body).at("id");
   const auto says = [](Replica& replica, const std::string& words) {
     return replica.process().standard_error().find(words) != std::string::npos;
   };
@@ -123,7 +109,7 @@ TEST(PostgresTrouble, OneThatIsCutOffEndsItsSolvesAndOthersTakeThem) {
   proxy.hold(false);
   EXPECT_TRUE(becomes([&] { return cut.get("/readyz")->status == 200; }));
   // Whoever has it goes on, and the one that came back takes the next.
-  const std::string next = json::parse(front.post(endless.dump())->body).at("id");
+  const std::string next = json::parse(front.post(endless_problem().dump())->body).at("id");
   EXPECT_TRUE(becomes([&] { return says(cut, next + " started"); }));
   EXPECT_FALSE(says(other, "the claim is lost"));
 }

@@ -102,6 +102,10 @@ void Connection::script(const std::string& sql) {
   answer(PQsendQuery(connection_.get(), sql.c_str()) == 1);
 }
 
+void Connection::lock(const std::string& name) {
+  run("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' ' || $1))", Values(name));
+}
+
 bool Connection::is_lost() {
   if (is_lost_) return true;
   pollfd socket{PQsocket(connection_.get()), POLLIN, 0};

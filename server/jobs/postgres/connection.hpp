@@ -97,6 +97,10 @@ class Connection {
   /// Runs several statements without values.
   void script(const std::string& sql);
 
+  /// Waits until no other transaction with the same tables has the lock of this name, and has it until its
+  /// own transaction ends.
+  void lock(const std::string& name);
+
   /// Whether it can be used no more: something was lost on the way, or the server has closed it meanwhile.
   bool is_lost();
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include <time.h>
-
 #include <spdlog/spdlog.h>
 
+#include "server/jobs/boot_time.hpp"
 #include "server/jobs/postgres/rows.hpp"
 #include "server/jobs/postgres/turns.hpp"
 #include "server/jobs/stored_form.hpp"
@@ -36,14 +35,6 @@ std::string hexadecimal(const std::string& bytes) {
     text += {digits[byte >> 4], digits[byte & 15]};
   }
   return text;
-}
-
-/// By a clock that nobody sets, and that goes on while the machine sleeps.
-std::chrono::milliseconds steady_now() {
-  timespec time{};
-  clock_gettime(CLOCK_BOOTTIME, &time);
-  return std::chrono::seconds(time.tv_sec) +
-         std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::nanoseconds(time.tv_nsec));
 }
 
 template <class Range, class Projection>
@@ -113,8 +104,7 @@ std::optional<Claim> Leases::claim(const Wish& wish) {
 bool Leases::keep_within(const Claim& claim, double share) {
   return database_.with([&](Connection& connection) {
     Transaction transaction(connection);
-    connection.run("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' share of ' || $1))",
-                   Values(claim.job.owner));
+    connection.lock("share of " + claim.job.owner);
     const Rows taken = connection.run("SELECT sum(memory) > $2 FROM leases WHERE owner = $1",
                                       Values(claim.job.owner, share));
     const bool is_beyond = !taken.is_null(0, 0) && taken.boolean(0, 0);
@@ -181,10 +171,10 @@ std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
 /// Whether the clock of the database was set forward a moment ago: nobody has had the time to renew by it.
 bool Leases::clock_jumped() {
   using Milliseconds = std::chrono::milliseconds;
-  const auto asked = steady_now();
+  const auto asked = boot_time();
   const Milliseconds shown(
       with_heart([](Connection& connection) { return connection.run("SELECT clock_ms()"); }).integer(0, 0));
-  const auto answered = steady_now();
+  const auto answered = boot_time();
   if (lead_ && shown - answered > *lead_ + lease_ / 2) {
     spdlog::warn("the clock of the database has jumped by {} s; claims are held for as long as ever",
                  (shown - answered - *lead_).count() / 1000);

@@ -191,7 +191,7 @@ void migrate(Connection& connection) {
   if (found == static_cast<int>(steps.size())) return;
   Transaction transaction(connection);
   connection.script("SET LOCAL statement_timeout = 0");
-  connection.script("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' migration'))");
+  connection.lock("migration");
   const int version = version_of(connection);
   require_known(version);
   // Services of an earlier version go on, and everybody would wait behind a lock that has to be waited for.

@@ -69,28 +69,36 @@ void insert(Connection& connection, const NewJob& job, const std::string& packed
 Store::Store(const std::string& url, const StoreLimits& limits, std::chrono::milliseconds lease)
     : limits_(limits), database_(url), leases_(database_, lease), sweeper_(database_, limits) {}
 
+/// Adds something as a whole. Nothing, or what somebody else has added meanwhile who came with the same key.
+template <class Known, class Add>
+auto Store::add_unless(const Known& known, const Add& add) -> decltype(known()) {
+  try {
+    database_.with([&](Connection& connection) {
+      Transaction transaction(connection);
+      add(connection);
+      transaction.commit();
+      return true;
+    });
+    return std::nullopt;
+  } catch (const Error& error) {
+    if (error.state != unique_violation) throw;
+    if (auto same = known()) return same;
+    throw;
+  } catch (const QueueFull&) {
+    if (auto same = known()) return same;
+    throw;
+  }
+}
+
 std::string Store::add(NewJob job) {
   const auto known = [&] { return job.key ? earlier(job.owner, *job.key, *job.problem) : std::nullopt; };
   if (const auto id = known()) return *id;
   const std::string packed = pack_text(*job.problem);
-  try {
-    database_.with([&](Connection& connection) {
-      Transaction transaction(connection);
-      require_places(connection, 1, job.owner, job.share);
-      insert(connection, job, packed);
-      transaction.commit();
-      return true;
-    });
-  } catch (const Error& error) {
-    if (error.state != unique_violation) throw;
-    // Somebody else came with the key at the same time.
-    if (const auto id = known()) return *id;
-    throw;
-  } catch (const QueueFull&) {
-    if (const auto id = known()) return *id;
-    throw;
-  }
-  return job.id;
+  const auto same = add_unless(known, [&](Connection& connection) {
+    require_places(connection, 1, job.owner, job.share);
+    insert(connection, job, packed);
+  });
+  return same.value_or(job.id);
 }
 
 Batch Store::add(NewBatch batch) {
@@ -98,32 +106,20 @@ Batch Store::add(NewBatch batch) {
   const auto known = [&] {
     return batch.key ? earlier_batch(owner, *batch.key, batch.digest) : std::nullopt;
   };
-  if (auto same = known()) return *std::move(same);
+  if (auto earlier = known()) return *std::move(earlier);
   std::vector<std::string> packed;
   for (const NewJob& job : batch.jobs) packed.push_back(pack_text(*job.problem));
   const std::string content = pack_content(batch.batch);
-  try {
-    database_.with([&](Connection& connection) {
-      Transaction transaction(connection);
-      require_places(connection, batch.jobs.size(), owner, batch.jobs.front().share);
-      connection.run("INSERT INTO batches VALUES ($1, $2, $3, $4, $5)",
-                     Values(id, owner, to_milliseconds(created), batch.digest, Bytes{content}));
-      if (batch.key)
-        connection.run("INSERT INTO idempotency_keys (owner, key, batch) VALUES ($1, $2, $3)",
-                       Values(owner, *batch.key, id));
-      for (std::size_t i = 0; i < packed.size(); ++i) insert(connection, batch.jobs[i], packed[i]);
-      transaction.commit();
-      return true;
-    });
-  } catch (const Error& error) {
-    if (error.state != unique_violation) throw;
-    if (auto same = known()) return *std::move(same);
-    throw;
-  } catch (const QueueFull&) {
-    if (auto same = known()) return *std::move(same);
-    throw;
-  }
-  return batch.batch;
+  auto same = add_unless(known, [&](Connection& connection) {
+    require_places(connection, batch.jobs.size(), owner, batch.jobs.front().share);
+    connection.run("INSERT INTO batches VALUES ($1, $2, $3, $4, $5)",
+                   Values(id, owner, to_milliseconds(created), batch.digest, Bytes{content}));
+    if (batch.key)
+      connection.run("INSERT INTO idempotency_keys (owner, key, batch) VALUES ($1, $2, $3)",
+                     Values(owner, *batch.key, id));
+    for (std::size_t i = 0; i < packed.size(); ++i) insert(connection, batch.jobs[i], packed[i]);
+  });
+  return same ? *std::move(same) : batch.batch;
 }
 
 /// Throws QueueFull if no request more may wait, or not so many jobs of the owner. Those of others who come
@@ -138,8 +134,7 @@ void Store::require_places(Connection& connection, std::size_t jobs, const std::
       Values(limits_.queue));
   if (!full.empty()) throw QueueFull(limits_.queue);
   if (!share.queue) return;
-  connection.run("SELECT pg_advisory_xact_lock(hashtext(current_schema() || ' queue of ' || $1))",
-                 Values(owner));
+  connection.lock("queue of " + owner);
   const Rows beyond = connection.run("SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1",
                                      Values(owner, jobs, *share.queue));
   if (beyond.boolean(0, 0)) throw QueueFull(*share.queue, true);

@@ -50,6 +50,8 @@ class Store : public JobStore {
   Fleet* fleet() override { return &leases_; }
 
  private:
+  template <class Known, class Add>
+  auto add_unless(const Known& known, const Add& add) -> decltype(known());
   void require_places(Connection& connection, std::size_t jobs, const std::string& owner,
                       const Share& share) const;
   bool refuse(const Claim& claim, const std::string& verdict);

@@ -27,18 +27,17 @@ bool Sweeper::holds(Connection& connection) {
   constexpr std::int64_t back = 60'000, forward = 3'600'000, hold = 86'400'000;
   const Rows rows = connection.run(
       "WITH was AS (SELECT seen FROM retention_clock) "
-      "UPDATE retention_clock SET seen = now.ms, hold_until = CASE WHEN now.ms - retention_clock.seen "
-      "BETWEEN "
-      "$1::bigint AND $2::bigint THEN hold_until ELSE now.ms + $3::bigint END "
+      "UPDATE retention_clock SET seen = now.ms, hold_until = CASE "
+      "WHEN now.ms - retention_clock.seen BETWEEN $1::bigint AND $2::bigint THEN hold_until "
+      "ELSE now.ms + $3::bigint END "
       "FROM was, (SELECT clock_ms() AS ms) AS now "
       "RETURNING hold_until - retention_clock.seen, retention_clock.seen - was.seen",
       Values(-back, forward, hold));
   const std::int64_t left = rows.integer(0, 0);
   if (left == hold)
     spdlog::warn(
-        "the clock of the database is {} s from where the last look at it was; for a day nothing is dropped "
-        "by "
-        "--keep-seconds",
+        "the clock of the database is {} s from where the last look at it was; "
+        "for a day nothing is dropped by --keep-seconds",
         rows.integer(0, 1) / 1000);
   return left > 0;
 }
