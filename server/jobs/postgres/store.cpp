@@ -102,24 +102,24 @@ std::string Store::add(NewJob job) {
 }
 
 Batch Store::add(NewBatch batch) {
-  const auto& [id, title, tags, owner, created, jobs] = batch.batch;
+  const Batch& made = batch.batch;
   const auto known = [&] {
-    return batch.key ? earlier_batch(owner, *batch.key, batch.digest) : std::nullopt;
+    return batch.key ? earlier_batch(made.owner, *batch.key, batch.digest) : std::nullopt;
   };
   if (auto earlier = known()) return *std::move(earlier);
   std::vector<std::string> packed;
   for (const NewJob& job : batch.jobs) packed.push_back(pack_text(*job.problem));
-  const std::string content = pack_content(batch.batch);
+  const std::string content = pack_content(made);
   auto same = add_unless(known, [&](Connection& connection) {
-    require_places(connection, batch.jobs.size(), owner, batch.jobs.front().share);
+    require_places(connection, batch.jobs.size(), made.owner, batch.jobs.front().share);
     connection.run("INSERT INTO batches VALUES ($1, $2, $3, $4, $5)",
-                   Values(id, owner, to_milliseconds(created), batch.digest, Bytes{content}));
+                   Values(made.id, made.owner, to_milliseconds(made.created), batch.digest, Bytes{content}));
     if (batch.key)
       connection.run("INSERT INTO idempotency_keys (owner, key, batch) VALUES ($1, $2, $3)",
-                     Values(owner, *batch.key, id));
+                     Values(made.owner, *batch.key, made.id));
     for (std::size_t i = 0; i < packed.size(); ++i) insert(connection, batch.jobs[i], packed[i]);
   });
-  return same ? *std::move(same) : batch.batch;
+  return same ? *std::move(same) : made;
 }
 
 /// Throws QueueFull if no request more may wait, or not so many jobs of the owner. Those of others who come
