@@ -69,6 +69,12 @@ class Cbor(unittest.TestCase):
             with self.assertRaises(cbor.CborError):
                 cbor.loads(whole[:end])
 
+    def test_depth_is_bounded(self) -> None:
+        for opening in (b"\x81", b"\x9f", b"\xa1\x00", b"\xbf\x00", b"\x5f"):
+            with self.subTest(opening), self.assertRaisesRegex(cbor.CborError, "nested too deeply"):
+                cbor.loads(opening * 100_000)
+        self.assertEqual(cbor.loads(b"\x81" * 40 + b"\x00"), cbor2.loads(b"\x81" * 40 + b"\x00"))
+
     def test_typed_arrays_are_those_of_numpy(self) -> None:
         doubles = cbor2.CBORTag(86, struct.pack("<6d", *range(6)))
         integers = cbor2.CBORTag(78, struct.pack("<3i", -1, 0, 2**31 - 1))
@@ -78,7 +84,8 @@ class Cbor(unittest.TestCase):
         found[0][0, 0] = 7  # it can be written to
 
     def test_extents_that_do_not_fit_are_refused(self) -> None:
-        for extents in [[2, 2], [3], [-1, 2, 9], "x"]:
+        wrong: list[Any] = [[2, 2], [3], [-1, 2, 9], "x", [-1], [3, -1], [2**63, 0], [6, True], [6.0], [], None, {}]
+        for extents in wrong:
             with self.subTest(extents), self.assertRaises(cbor.CborError):
                 cbor.loads(cbor2.dumps(cbor2.CBORTag(40, [extents, cbor2.CBORTag(86, bytes(48))])))
 

@@ -25,6 +25,7 @@ from signorini import (
     Client,
     Local,
     NotInResult,
+    PressureForce,
     Problem,
     Refused,
     Result,
@@ -105,6 +106,14 @@ class Solves(WithDaemon):
                     self.assertEqual((array.shape, array.dtype), (shape, numpy.dtype(kind)), name)
                 numpy.testing.assert_array_equal(result.contact["bottom"].open, result.contact["bottom"].clearance > 0)
                 self.assertIsNone(result.history.displacement_change)
+
+    def test_named_quantities_are_fetched_unasked(self) -> None:
+        posed = dataclasses.replace(block(), quantities=[PressureForce("grip", "bottom")])
+        for way, solve in every_way(self).items():
+            with self.subTest(way):
+                (grip,) = solve(posed).quantities
+                self.assertEqual(grip.name, "grip")
+                self.assertAlmostEqual(grip.value, 2.0, 9)
 
     def test_only_what_is_named_is_fetched(self) -> None:
         result = self.client.solve(block(), fields=["contact"])
@@ -281,6 +290,16 @@ class Twins(WithDaemon):
         while self.solves("queued") + self.solves("running") and time.monotonic() < until:
             time.sleep(0.05)
         self.assertEqual((self.solves("queued"), self.solves("running")), (0, 0))
+
+    def test_a_name_that_is_none_is_refused_in_words(self) -> None:
+        for name in ("nö", "stress,nö", "a&b=c"):
+            id = self.client.solve(block(), fields=[]).id
+            with self.assertRaisesRegex(Refused, "fields"):
+                self.client.solve(block(), fields=[name])
+            with self.assertRaisesRegex(Refused, "fields"):
+                self.client.result(id, fields=[name])
+            with self.assertRaisesRegex(Refused, "fields"):
+                Local(PROGRAM).solve(block(), fields=[name])
 
     def test_ctrl_c_cancels_its_solves(self) -> None:
         # Who started the tests in the background may have had SIGINT ignored.

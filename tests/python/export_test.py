@@ -58,6 +58,12 @@ class Pyvista(unittest.TestCase):
         numpy.testing.assert_array_equal(elastic.cell_data["von_mises"], ELASTIC.von_mises)
         self.assertEqual(list(membrane.cell_data), ["stress"])
 
+    def test_what_a_result_lacks_is_no_table(self) -> None:
+        without: list[dict[str, Any]] = [{"contact": None}, {"contact": {}}]
+        for each in without:
+            with self.assertRaisesRegex(NotInResult, "this result has no contact"):
+                Result(dict(ELASTIC.document) | each).to_pandas("contact")
+
     def test_what_was_not_fetched_is_left_out(self) -> None:
         grid = self.grid(Local(PROGRAM).solve(block(), fields=["mesh"]))
         self.assertEqual((grid.point_data, grid.cell_data), ({}, {}))

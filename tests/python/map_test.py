@@ -9,11 +9,13 @@ import re
 import signal
 import tempfile
 import threading
+import time
 import unittest
 from collections import Counter
+from collections.abc import Callable
 
 from daemon import PROGRAM, STOPPED_EARLY, Daemon, block
-from signorini import AsyncClient, Client, Local, Refused
+from signorini import AsyncClient, Client, Local, Refused, Result
 from signorini.exchange import Request
 from signorini.progress import ProgressBar
 
@@ -79,6 +81,25 @@ class Many(unittest.TestCase):
 
             self.assertEqual(asyncio.run(solve()), [100.0 + i for i in range(60)])
             self.expect_once(daemon, 60)
+
+    def test_a_service_that_keeps_little_loses_nothing(self) -> None:
+        problems = [block(100.0 + i, divisions=(16, 8), title=f"young {100 + i}") for i in range(40)]
+
+        def tarry(done: int, count: int) -> None:
+            time.sleep(0.03)  # while the workers go on
+
+        ways: list[Callable[[str], list[Result]]] = [
+            lambda url: Client(url).map(problems, progress=tarry),
+            lambda url: asyncio.run(AsyncClient(url).map(problems, progress=tarry)),
+        ]
+        for solve_all in ways:
+            with Daemon("--keep-bytes", "1") as daemon, self.assertWarnsRegex(RuntimeWarning, "keeps too little"):
+                results = solve_all(daemon.url)
+            youngs = [result.problem["material"]["young"] for result in results]
+            self.assertEqual(youngs, [100.0 + i for i in range(40)])
+            again = "".join(daemon.log).count("accepted") - 40
+            print(f"\nof 40 problems {again} were solved again by a service that keeps one result")
+            self.assertLess(again, 30)
 
     def test_a_solve_that_fails_is_a_result_among_the_others(self) -> None:
         failing = dataclasses.replace(block(), solver=STOPPED_EARLY)

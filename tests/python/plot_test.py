@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 import xml.etree.ElementTree
 from typing import Any
 
 import numpy
 from matplotlib import pyplot
 
-from daemon import PROGRAM, block
-from signorini import Local, NotInResult
+from daemon import PROGRAM, STOPPED_EARLY, block
+from signorini import Local, NotInResult, Result
 from signorini.figures import CONFORMING, NONCONFORMING, draw_nodes, draw_solution, write_figures
 
 ELASTIC = Local(PROGRAM).solve(block())
@@ -68,6 +70,37 @@ class Plots(unittest.TestCase):
                 result.plot(field)
         with self.assertRaises(NotInResult):
             MEMBRANE.plot("von_mises")
+
+    def test_what_a_result_lacks_is_said(self) -> None:
+        document = dict(ELASTIC.document)
+        zeros = {name: numpy.zeros_like(column) for name, column in document["history"].items()}
+        empty = {name: column[:0] for name, column in document["history"].items()}
+        numbers = pyplot.get_fignums()
+        lacks: list[tuple[str, dict[str, Any]]] = [
+            ("history", {"history": None}), ("history", {"history": empty}), ("history", {"history": zeros}),
+            ("contact", {"contact": None}), ("contact", {"contact": {}}), ("stress", {"stress": None}),
+            ("stress_xx", {"mesh": None}), ("displacement", {"displacement": None}), ("von_mises", {"von_mises": None}),
+            ("displacement", {"mesh": None}),
+        ]  # fmt: skip
+        for field, without in lacks:
+            with self.subTest(field, without=without), warnings.catch_warnings():
+                warnings.simplefilter("error")
+                with self.assertRaisesRegex(NotInResult, "^this result has no (history|contact|stress|mesh|disp|von)"):
+                    Result(document | without).plot(field)
+        with self.assertRaisesRegex(NotInResult, "no displacement"):
+            Result(document | {"displacement": None}).plot("von_mises", deformed=2)
+        self.assertEqual(pyplot.get_fignums(), numbers)  # none is left empty
+
+    def test_every_result_of_a_solve_that_fails_is_drawn_or_lacks_it(self) -> None:
+        sliding = dataclasses.replace(block(), boundary={"bottom": block().boundary["bottom"]})
+        for problem in (sliding, dataclasses.replace(block(), solver=STOPPED_EARLY)):
+            (result,) = Local(PROGRAM).map([problem])
+            self.assertEqual(result.status, "failed")
+            for field in ("displacement", "stress", "von_mises", "contact", "history"):
+                try:
+                    result.plot(field)
+                except NotInResult as error:
+                    self.assertIn("this result has no", str(error))
 
 
 class Figures(unittest.TestCase):

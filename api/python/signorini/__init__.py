@@ -10,10 +10,12 @@ from .boundary import Contact, Fixed, Roller, Traction
 from .client import Client
 from .domain import Arc, Circle, CircularHole, Gmsh, GivenMesh, Polygon, Rectangle, Vertex
 from .errors import (
+    BadReply,
     Fault,
     NotInResult,
     PackageMissing,
     Refused,
+    ResultsDropped,
     ServiceUnreachable,
     SignoriniError,
     SolveFailed,
@@ -31,6 +33,7 @@ __all__ = [
     "Adaptive",
     "Arc",
     "AsyncClient",
+    "BadReply",
     "Circle",
     "CircularHole",
     "Client",
@@ -59,6 +62,7 @@ __all__ = [
     "Rectangle",
     "Refused",
     "Result",
+    "ResultsDropped",
     "Roller",
     "ServiceUnreachable",
     "SignoriniError",

@@ -51,11 +51,11 @@ def from_bytes(data: bytes, code: str, extents: Sequence[int]) -> Any:
     `code` is `f8` or `i4`, as NumPy has it; the bytes are in little endian order. An array of NumPy can be written to.
     Raises ValueError if the bytes are not as many as the extents say.
     """
-    if numpy is not None:
-        return numpy.frombuffer(data, f"<{code}").reshape(extents).copy()
     count = math.prod(extents)
     if len(data) != count * int(code[1]):
         raise ValueError(f"{len(data)} bytes are not {count} numbers")
+    if numpy is not None:
+        return numpy.frombuffer(data, f"<{code}").reshape(extents).copy()
     return _nested(struct.unpack(f"<{count}{_CODES[code]}", data), extents)
 
 

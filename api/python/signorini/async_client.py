@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import http.client
-import io
-import socket
 import ssl
 from collections.abc import Iterable, Sequence
-from typing import Any, cast
+from typing import Any
 
-from . import conversation, questions
-from .conversation import Line
+from . import conversation, questions, wire
+from .conversation import Line, checked_patience
 from .document import read
-from .exchange import Answer, Conversation, Endpoint, Event, Lost, Reply, Request, Step
+from .endpoint import Endpoint
+from .exchange import Answer, Conversation, Event, Request, Step
 from .questions import AnyProblem, Progress
 from .result import Result
 from .summary import Estimate
@@ -35,7 +33,7 @@ class AsyncClient:
         context: ssl.SSLContext | None = None,
     ) -> None:
         self._endpoint = Endpoint(url, token)
-        self._patience = patience
+        self._patience = checked_patience(patience)
         self._context = context or (ssl.create_default_context() if self._endpoint.is_secure else None)
 
     async def solve(self, problem: AnyProblem, *, fields: Sequence[str] | None = None) -> Result:
@@ -68,32 +66,32 @@ class AsyncClient:
 
     async def delete_tagged(self, tag: str, count: int) -> dict[str, int]:
         """Cancels and deletes solves; see `Client.delete_tagged`."""
-        dismissed: dict[str, int] = await self._ask(questions.deletion(tag, count))
+        dismissed: dict[str, int] = await self._ask(questions.deletion(tag, count), cancelled=int, deleted=int)
         return dismissed
 
     async def result(self, id: str, *, fields: Sequence[str] | None = None) -> Result:
         """The result of an earlier solve; see `Client.result`."""
-        return Result(await self._ask(questions.result(id, fields)))
+        return Result(await self._ask(questions.result(id, fields), id=str, status=str))
 
     async def validate(self, problem: AnyProblem) -> Estimate:
         """Sizes of a problem and what it would cost; see `Client.validate`."""
-        estimate: Estimate = read(Estimate, await self._ask(questions.validation(problem)))
+        document = await self._ask(questions.validation(problem), unknowns=dict, estimated=dict)
+        estimate: Estimate = read(Estimate, document)
         return estimate
 
     async def examples(self) -> list[str]:
         """The names of the examples of the service."""
-        return [example["name"] for example in (await self._ask(questions.examples()))["examples"]]
+        return await self._run(conversation.list_examples(self._line(), questions.examples()))
 
     async def example(self, name: str) -> dict[str, Any]:
         """An example as a document; see `Client.example`."""
-        document: dict[str, Any] = await self._ask(questions.example(name))
-        return document
+        return await self._ask(questions.example(name))
 
     def _line(self) -> Line:
         return Line(self._patience)
 
-    async def _ask(self, request: Request) -> Any:
-        return await self._run(conversation.ask(self._line(), request))
+    async def _ask(self, request: Request, **members: type) -> dict[str, Any]:
+        return await self._run(conversation.ask(self._line(), request, **members))
 
     async def _run(self, talk: Conversation[Answer]) -> Answer:
         try:
@@ -113,20 +111,30 @@ class AsyncClient:
         if not isinstance(step, Request):
             await asyncio.sleep(step.seconds)
             return None
-        sent = False
+        inbox = wire.Inbox(step)
         try:
-            async with asyncio.timeout(step.timeout):
-                reader, writer = await asyncio.open_connection(
-                    self._endpoint.host, self._endpoint.port, ssl=self._context
-                )
-                sent = True
-                try:
-                    writer.write(_request_bytes(self._endpoint, step))
-                    return _reply(step, await reader.read())
-                finally:
-                    writer.close()
-        except (OSError, http.client.HTTPException) as error:
-            return Lost(f"{self._endpoint.url}: {error!r}", sent)
+            await self._exchange(step, inbox)
+            response = inbox.response()
+            response.begin()
+            return wire.read(self._endpoint, step, response)
+        except wire.MISHAPS as error:
+            return wire.mishap(self._endpoint, step, error, inbox.has_head())
+
+    async def _exchange(self, request: Request, inbox: wire.Inbox) -> None:
+        async with asyncio.timeout(request.patience):
+            reader, writer = await asyncio.open_connection(
+                self._endpoint.host, self._endpoint.port, ssl=self._context
+            )
+        try:
+            writer.write(_request_bytes(self._endpoint, request))
+            while not inbox.is_whole():
+                async with asyncio.timeout(request.timeout):
+                    piece = await reader.read(wire.PIECE)
+                if not piece:
+                    return
+                inbox.bytes += piece
+        finally:
+            writer.close()
 
 
 def _request_bytes(endpoint: Endpoint, request: Request) -> bytes:
@@ -139,21 +147,3 @@ def _request_bytes(endpoint: Endpoint, request: Request) -> bytes:
     lines = [f"{name}: {text}" for name, text in headers.items()]
     head = "\r\n".join([f"{request.method} {endpoint.path(request)} HTTP/1.1", *lines, "", ""])
     return head.encode("latin-1") + request.body
-
-
-class _Received:
-    """Bytes in the place of a socket, of which http.client reads a reply."""
-
-    def __init__(self, received: bytes) -> None:
-        self.received = received
-
-    def makefile(self, mode: str) -> io.BytesIO:
-        return io.BytesIO(self.received)
-
-
-def _reply(request: Request, received: bytes) -> Reply:
-    """Raises HTTPException if the connection ended before the reply did."""
-    response = http.client.HTTPResponse(cast(socket.socket, _Received(received)), method=request.method)
-    response.begin()
-    body = response.read()
-    return Reply(response.status, {name.lower(): value for name, value in response.getheaders()}, body)

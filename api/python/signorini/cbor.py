@@ -10,6 +10,7 @@ from .arrays import from_bytes
 ROW_MAJOR, INT32, FLOAT64 = 40, 78, 86
 _CODES = {INT32: "i4", FLOAT64: "f8"}
 _BREAK = object()
+_DEEPEST = 64  # values within each other; results have eight
 
 
 class CborError(ValueError):
@@ -41,6 +42,7 @@ class _Reader:
     def __init__(self, document: bytes) -> None:
         self.document = document
         self.place = 0
+        self.depth = 0
 
     def element(self) -> Any:
         """A value that is there, and no end of others."""
@@ -50,6 +52,14 @@ class _Reader:
         return value
 
     def value(self) -> Any:
+        if self.depth == _DEEPEST:
+            raise CborError(f"at byte {self.place} values are nested too deeply")
+        self.depth += 1
+        value = self._value()
+        self.depth -= 1
+        return value
+
+    def _value(self) -> Any:
         initial = self.take(1)[0]
         major, low = initial >> 5, initial & 31
         if major == 7:
@@ -136,8 +146,8 @@ class _Reader:
 
     def array(self, tag: int, data: bytes, extents: Any) -> Any:
         try:
-            return from_bytes(data, _CODES[tag], extents)
-        except (ValueError, TypeError) as error:
+            return from_bytes(data, _CODES[tag], _sizes(extents))
+        except ValueError as error:
             raise CborError(f"{len(data)} bytes are no array of the extents {extents}") from error
 
     def data(self) -> bytes:
@@ -145,6 +155,14 @@ class _Reader:
         if not isinstance(data, bytes):
             raise CborError("a typed array is made of bytes")
         return data
+
+
+def _sizes(extents: Any) -> list[int]:
+    if not isinstance(extents, list) or not extents:
+        raise ValueError("there are no extents")
+    if any(type(size) is not int or not 0 <= size < 1 << 31 for size in extents):
+        raise ValueError("an extent is no count")
+    return extents
 
 
 def _members(pieces: list[Any]) -> dict[Any, Any]:

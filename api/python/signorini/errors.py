@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .result import Result
@@ -15,6 +15,10 @@ class SignoriniError(Exception):
 
 class ServiceUnreachable(SignoriniError):
     """Nothing answers at the address, or no longer."""
+
+
+class BadReply(SignoriniError):
+    """What answers is no service of Signorini, or no program of it: what came, and from where."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,9 @@ class Refused(SignoriniError):
         lines += [f"  {fault.pointer or fault.parameter or ''} {fault.detail}" for fault in faults]
         super().__init__("\n".join(lines))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.status, self.type, self.title, self.detail, self.faults, self.index)
+
 
 class SolveFailed(SignoriniError):
     """A solve ended as `failed` or `cancelled`. `result` has its last iterate, if there was any."""
@@ -59,6 +66,13 @@ class SolveFailed(SignoriniError):
     def __init__(self, result: Result) -> None:
         self.result = result
         super().__init__(f"the solve {result.status}: {result.error}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.result,)
+
+
+class ResultsDropped(SignoriniError):
+    """A service dropped results before they could be fetched."""
 
 
 class NotInResult(SignoriniError, AttributeError):

@@ -67,6 +67,8 @@ def to_pandas(result: Result, table: str) -> pandas.DataFrame:
     """
     pandas = package("pandas", "to_pandas()")
     if table == "contact":
+        if not result.contact:
+            raise NotInResult("this result has no contact: its problem has no such part")
         frames = [_frame_of_part(pandas, name, part) for name, part in result.contact.items()]
         return pandas.concat(frames, ignore_index=True)
     if table == "history":

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+from .errors import NotInResult
 from .export import package
 
 if TYPE_CHECKING:
     import matplotlib.axes
 
+    from .fields import ContactPart, History
     from .result import Result
 
 _LABELS = {"von_mises": "von Mises stress"}
@@ -29,16 +32,28 @@ def plot(
     """
     pyplot = package("matplotlib.pyplot", "plot()")
     numpy = package("numpy", "plot()")
-    values = None if field in ("contact", "history") else _values(numpy, result, field)
+    # What there is to draw is found before axes are made, so that none are left empty.
+    draw = _drawing(numpy, result, field, deformed)
     if axes is None:
         axes = pyplot.subplots()[1]
-    if field == "contact":
-        _draw_contact(numpy, result, axes)
-    elif field == "history":
-        _draw_history(result, axes)
-    else:
-        _draw_on_body(result, field, values, deformed, axes)
+    draw(axes)
     return axes
+
+
+def _drawing(numpy: Any, result: Result, field: str, deformed: float) -> Callable[[Any], None]:
+    """What draws the field on axes. Raises ValueError, NotInResult."""
+    if field == "contact":
+        parts = result.contact
+        if not parts:
+            raise NotInResult("this result has no contact: its problem has no such part")
+        return lambda axes: _draw_contact(numpy, parts, axes)
+    if field == "history":
+        history, curves = result.history, _curves(result.history)
+        if not curves:
+            raise NotInResult("this result has no history to draw: no iteration left a residual above 0")
+        return lambda axes: _draw_history(history, curves, axes)
+    values, points, triangles = _values(numpy, result, field), _points(result, deformed), result.mesh.triangles
+    return lambda axes: _draw_on_body(field, values, points, triangles, axes)
 
 
 def _values(numpy: Any, result: Result, field: str) -> Any:
@@ -62,23 +77,27 @@ def _values(numpy: Any, result: Result, field: str) -> Any:
     )
 
 
-def _draw_on_body(result: Result, field: str, values: Any, deformed: float, axes: Any) -> None:
+def _points(result: Result, deformed: float) -> Any:
+    """Those of the mesh, moved by so many times the displacement of an elastic body."""
     points = result.mesh.points
     if deformed and result.displacement.at_points.ndim == 2:
         points = points + deformed * result.displacement.at_points
+    return points
+
+
+def _draw_on_body(field: str, values: Any, points: Any, triangles: Any, axes: Any) -> None:
     how = {"shading": "gouraud"} if field == "displacement" else {"shading": "flat", "facecolors": values}
     arguments = [values] if field == "displacement" else []
-    triangles = result.mesh.triangles
     drawn = axes.tripcolor(*points.T, triangles, *arguments, rasterized=len(triangles) > _MOST_SHAPES, **how)
     axes.set(aspect="equal", xlabel="x", ylabel="y")
     beside = package("mpl_toolkits.axes_grid1", "plot()").make_axes_locatable(axes).append_axes("right", "4%", pad=0.1)
     axes.figure.colorbar(drawn, cax=beside, label=_LABELS.get(field, field.replace("_", " ")))
 
 
-def _draw_contact(numpy: Any, result: Result, axes: Any) -> None:
+def _draw_contact(numpy: Any, parts: Mapping[str, ContactPart], axes: Any) -> None:
     """Pressures to the left, clearances to the right, by the way along each part."""
     right = axes.twinx()
-    for name, part in result.contact.items():
+    for name, part in parts.items():
         steps = numpy.linalg.norm(numpy.diff(part.points, axis=0), axis=1)
         way = numpy.concatenate([[0.0], numpy.cumsum(steps)])
         line = axes.plot(way, part.pressure, label=f"{name}: pressure")[0]
@@ -89,11 +108,15 @@ def _draw_contact(numpy: Any, result: Result, axes: Any) -> None:
     axes.legend(drawn[0] + others[0], drawn[1] + others[1], loc="upper right")
 
 
-def _draw_history(result: Result, axes: Any) -> None:
-    history = result.history
-    for name in ("displacement_change", "clearance_change", "equilibrium", "penetration", "tension", "complementarity"):
-        column = getattr(history, name)
-        if column is not None and (column > 0).any():
-            axes.semilogy(history.iteration, column, label=name.replace("_", " "))
+def _curves(history: History) -> dict[str, Any]:
+    """The columns that a logarithmic axis shows."""
+    names = ("displacement_change", "clearance_change", "equilibrium", "penetration", "tension", "complementarity")
+    columns = {name: getattr(history, name) for name in names}
+    return {name: column for name, column in columns.items() if column is not None and (column > 0).any()}
+
+
+def _draw_history(history: History, curves: Mapping[str, Any], axes: Any) -> None:
+    for name, column in curves.items():
+        axes.semilogy(history.iteration, column, label=name.replace("_", " "))
     axes.set(xlabel="iteration", ylabel="relative residual")
     axes.legend()

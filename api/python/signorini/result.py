@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import export
@@ -40,17 +40,17 @@ class Result:
     @property
     def status(self) -> str:
         """`succeeded`, `failed` or `cancelled`."""
-        return str(self.document["status"])
+        return str(self.document.get("status"))
 
     @property
     def error(self) -> str | None:
         """Why it did not succeed and what to try, or None."""
         if self.status == "succeeded":
             return None
-        error, summary = self.document.get("error") or {}, self.document.get("summary") or {}
-        rows = [*self.document.get("sweep", []), *self.document.get("study", {}).get("rows", [])]
-        of_rows = next((row["error"] for row in rows if "error" in row), None)
-        return str(error.get("detail") or summary.get("advice") or of_rows or self.status)
+        rows = [*_list(self.document.get("sweep")), *_list(_dict(self.document.get("study")).get("rows"))]
+        of_rows = next((row["error"] for row in map(_dict, rows) if "error" in row), None)
+        of_all = _dict(self.document.get("error")).get("detail") or _dict(self.document.get("summary")).get("advice")
+        return str(of_all or of_rows or self.status)
 
     def check(self) -> Result:
         """This result. Raises SolveFailed if the solve did not succeed."""
@@ -61,7 +61,7 @@ class Result:
     @property
     def problem(self) -> dict[str, Any]:
         """The problem as it was posted, a document."""
-        return dict(self._member("problem"))
+        return dict(_dict(self._member("problem")))
 
     @property
     def summary(self) -> Summary:
@@ -164,3 +164,11 @@ class Result:
     def _reals(self, name: str) -> Reals:
         numbers: Reals = read(Reals, self._member(name))
         return numbers
+
+
+def _dict(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}
+
+
+def _list(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list) else []
