@@ -1,7 +1,8 @@
 # embed_texts(<variable> FUNCTION <name> TYPE <type> NAMESPACE <namespace> HEADER <header> [LIGHT|BYTES] FILES <file>...)
 #
 # Compiles files into the program: sets the variable to a source that is written again when one of the files
-# changes. LIGHT: without what only their readers need. BYTES: they are no texts. See embed_texts.cmake.
+# changes. LIGHT: scripts and styles are minified. BYTES: they are no texts. See embed_texts.cmake.
+find_program(ESBUILD esbuild REQUIRED)
 set(embed_texts_script ${CMAKE_CURRENT_LIST_DIR}/embed_texts.cmake)
 
 function(embed_texts variable)
@@ -10,7 +11,8 @@ function(embed_texts variable)
   add_custom_command(
     OUTPUT ${source}
     COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D FUNCTION=${arg_FUNCTION} -D TYPE=${arg_TYPE}
-            -D NAMESPACE=${arg_NAMESPACE} -D HEADER=${arg_HEADER} -D LIGHT=${arg_LIGHT} -D BYTES=${arg_BYTES} -D "FILES=${arg_FILES}" -P ${embed_texts_script}
+            -D NAMESPACE=${arg_NAMESPACE} -D HEADER=${arg_HEADER} -D LIGHT=${arg_LIGHT} -D BYTES=${arg_BYTES} -D ESBUILD=${ESBUILD}
+            -D "FILES=${arg_FILES}" -P ${embed_texts_script}
     DEPENDS ${arg_FILES} ${embed_texts_script}
     COMMENT "Embedding ${arg_FUNCTION}"
     VERBATIM)

@@ -1,9 +1,7 @@
 # Writes OUTPUT, the C++ source of FUNCTION, which returns the texts of the list FILES by name: `const
 # std::vector<TYPE>& FUNCTION()` in the namespace NAMESPACE, declared in HEADER; TYPE is built from a name, the
-# file's without `.json`, and a text. If LIGHT is true, the texts come without what only their readers need, and browsers
-# load less: without comments (`//` at the beginning of a line or between blanks, so that no string may contain it; in a
-# style `/* */`), indentation, the ends of lines that a bracket, comma or semicolon ends too, and the blanks of styles. If
-# BYTES is true, they are taken byte by byte.
+# file's without `.json`, and a text. If LIGHT is true, scripts and styles come as ESBUILD minifies them: browsers load
+# less. If BYTES is true, the files are taken byte by byte.
 
 # Raw string literals that follow each other are one; compilers guarantee 65536 characters each.
 set(longest_literal 65536)
@@ -20,21 +18,11 @@ foreach(file IN LISTS FILES)
     string(APPEND entries "      {\"${name}\", std::string(\"${text}\", ${length})},\n")
     continue()
   endif()
-  file(READ ${file} text)
-  if(LIGHT)
-    string(REGEX REPLACE "\n[ \t]+" "\n" text "\n${text}")
-    string(REGEX REPLACE "\n//[^\n]*" "" text "${text}")
-    string(REGEX REPLACE " +// [^\n]*" "" text "${text}")
-    string(REGEX REPLACE "\n+" "\n" text "${text}")
-    string(REGEX REPLACE "([;{,(])\n" "\\1" text "${text}")
-    string(REGEX REPLACE "\n([)}])" "\\1" text "${text}")
-    if(file MATCHES "[.]css$")
-      string(REGEX REPLACE "/[*][^*]*[*]/" "" text "${text}")
-      string(REGEX REPLACE "([a-z]:|[;,{}])[ \n]+" "\\1" text "${text}")
-      string(REGEX REPLACE " ([{}])" "\\1" text "${text}")
-      string(REPLACE ";}" "}" text "${text}")
-    endif()
-    string(STRIP "${text}" text)
+  if(LIGHT AND file MATCHES "[.](js|css)$")
+    execute_process(COMMAND ${ESBUILD} --minify --charset=utf8 --log-level=warning ${file} OUTPUT_VARIABLE text
+                    COMMAND_ERROR_IS_FATAL ANY)
+  else()
+    file(READ ${file} text)
   endif()
   string(LENGTH "${text}" length)
   set(literals "")

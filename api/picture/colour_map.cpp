@@ -35,7 +35,7 @@ constexpr Stops blue_to_red{{{0x21, 0x66, 0xac},
 }  // namespace
 
 ColourMap::ColourMap(double low, double high)
-    : diverges_(low < 0 && high > 0),
+    : diverges_(low < 0 && high > 0 && std::min(-low, high) > std::max(-low, high) / 50),
       is_single_(high / 2 - low / 2 <= 1e-10 * std::max(std::abs(low), std::abs(high))),
       low_(low),
       high_(high) {

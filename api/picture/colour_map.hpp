@@ -6,6 +6,8 @@ namespace signorini::api {
 
 /// Colours for the values from `low` to `high`: viridis (van der Walt, Smith 2015) for magnitudes, which is
 /// perceptually even and safe for the colour-blind; for signed values ColorBrewer's RdBu, whose middle is 0.
+/// Where one sign has less than a fiftieth of the other's size, as rounding and small overshoots have, half
+/// of the colours would go to it: such values are magnitudes too.
 class ColourMap {
  public:
   static constexpr int kBands = 32;

@@ -54,7 +54,7 @@ export function decode(bytes) {
       each(info, () => list.push(value()));
       return list;
     }
-    const members = {};
+    const members = Object.create(null); // any name may be one
     each(info, () => { const key = value(); members[key] = value(); });
     return members;
   }

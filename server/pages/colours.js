@@ -5,14 +5,15 @@ const viridis = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33,
 const blueToRed = [[33, 102, 172], [67, 147, 195], [146, 197, 222], [209, 229, 240], [247, 247, 247], [253, 219, 199], [244, 165, 130], [214, 96, 77], [178, 24, 43]];
 
 /// What the colours mean: `low`, `high`, and whether they diverge at 0. The range of signed values is widened until 0
-/// is in its middle; values that differ by rounding are one.
+/// is in its middle, unless one sign has less than a fiftieth of the other's size; values that differ by rounding are
+/// one.
 export function scaleOf(low, high) {
   if (high / 2 - low / 2 <= 1e-10 * Math.max(Math.abs(low), Math.abs(high))) {
     const width = low === 0 ? 1 : Math.abs(low) / 2;
     return { low: low - width, high: low + width, diverges: false };
   }
-  if (!(low < 0 && high > 0)) return { low, high, diverges: false };
   const size = Math.max(high, -low);
+  if (!(Math.min(high, -low) > size / 50)) return { low, high, diverges: false };
   return { low: -size, high: size, diverges: true };
 }
 

@@ -5,12 +5,12 @@ import { mostTriangles, pngOf, svgOf } from "/pages/files.js";
 
 /// `figures`: one, or two that are linked; `steps`: null, or the levels to step through.
 export function controlsOf(figures, view, names, steps) {
-  const [figure] = figures;
+  const [figure] = figures, free = { fixed: false, low: null, high: null };
   const field = element("select", {}, [...figure.fields.values()].map(({ key, name }) => element("option", { value: key }, name)));
-  field.onchange = () => view.set({ field: field.value, fixed: false, low: null, high: null });
+  field.onchange = () => view.set({ field: field.value, ...free });
 
   const toggle = (name, text, possible = true) => {
-    const own = button(text, () => view.set({ [name]: !state(name) }));
+    const own = button(text, () => view.set({ [name]: !state(name), ...(name === "difference" && free) }));
     own.hidden = !possible;
     return { name, own };
   };
@@ -24,7 +24,7 @@ export function controlsOf(figures, view, names, steps) {
   const lift = element("label", {}, figure.shape.body ? "Deformed ×" : "Height ×", exact, slider);
 
   const fixed = element("input", { type: "checkbox" }), low = element("input", { type: "number", step: "any", className: "short", ariaLabel: "Lowest value of the scale" }), high = element("input", { type: "number", step: "any", className: "short", ariaLabel: "Highest value of the scale" });
-  fixed.onchange = () => view.set(fixed.checked ? { fixed: true, low: figure.scale.low, high: figure.scale.high } : { fixed: false, low: null, high: null });
+  fixed.onchange = () => view.set(fixed.checked ? { fixed: true, low: figure.scale.low, high: figure.scale.high } : free);
   for (const [name, input] of [["low", low], ["high", high]]) input.onchange = () => { if (input.value !== "") view.set({ fixed: true, low: view.low ?? figure.scale.low, high: view.high ?? figure.scale.high, [name]: input.valueAsNumber }); };
 
   const each = (use) => figures.forEach((own, i) => use(own, `${names[i]}-${own.field.key}`));
@@ -33,8 +33,8 @@ export function controlsOf(figures, view, names, steps) {
   if (svg.disabled) svg.title = `Only of up to ${short(mostTriangles)} triangles`;
   const link = button("Copy link", async () => {
     view.writeAddress();
-    await navigator.clipboard?.writeText(location.href).catch(() => {});
-    link.textContent = "Copied";
+    const copied = navigator.clipboard?.writeText(location.href).then(() => "Copied");
+    link.textContent = await copied?.catch(() => null) ?? "It is in the address bar";
     setTimeout(() => { link.textContent = "Copy link"; }, 1500);
   });
 
@@ -49,7 +49,7 @@ export function controlsOf(figures, view, names, steps) {
     if (steps) told.textContent = `${(level.value = steps.shown())} of ${steps.count}`;
     lift.hidden = !figure.shape.body && !figure.shape.surface;
     fixed.checked = view.fixed;
-    if (figure.scale) for (const [name, input] of [["low", low], ["high", high]]) if (document.activeElement !== input) input.value = Number((view.fixed ? view[name] : figure.scale[name]).toPrecision(6));
+    if (figure.scale) for (const [name, input] of [["low", low], ["high", high]]) if (document.activeElement !== input) input.value = Number(((view.fixed ? view[name] : null) ?? figure.scale[name]).toPrecision(6));
   };
   figure.onDrawn = show;
   show();

@@ -108,9 +108,10 @@ export class Drawing {
 
   makeArrays() {
     const { gl } = this;
-    const arrays = (coarse) => ({ coarse, array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()) });
-    this.whole = arrays(null);
-    this.rough = this.coarse && arrays(this.coarse);
+    const arrays = () => ({ array: gl.createVertexArray(), buffers: [0, 1, 2].map(() => gl.createBuffer()) });
+    this.whole = arrays();
+    this.rough = this.coarse && arrays();
+    this.waiting = new Map(); // location → what the whole is filled with when it is first drawn
   }
 
   /// Triangles of another mesh will be set.
@@ -125,14 +126,17 @@ export class Drawing {
 
   /// So many numbers a corner; `of`: "own" or "at", by which corner of the whole those of the coarse one go.
   fill(location, numbers, size, of) {
+    if (this.rough) this.load(this.rough, location, gathered(numbers, size, this.coarse[of]), size);
+    this.waiting.set(location, [numbers, size]);
+  }
+
+  load({ array, buffers }, location, numbers, size) {
     const { gl } = this;
-    for (const { array, buffers, coarse } of [this.whole, this.rough].filter(Boolean)) {
-      gl.bindVertexArray(array);
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffers[location]);
-      gl.bufferData(gl.ARRAY_BUFFER, coarse ? gathered(numbers, size, coarse[of]) : numbers, gl.STATIC_DRAW);
-      gl.enableVertexAttribArray(location);
-      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
-    }
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[location]);
+    gl.bufferData(gl.ARRAY_BUFFER, numbers, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(location);
+    gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
   }
 
   /// Two coordinates a corner; one number a corner by which it is lifted, or two by which it is shifted.
@@ -157,8 +161,12 @@ export class Drawing {
       gl.texParameteri(gl.TEXTURE_2D, gl[`TEXTURE_${name}`], gl[value]);
   }
 
-  run({ made, ...at }, { array, count }, view, width, height) {
+  run({ made, ...at }, arrays, view, width, height) {
     const { gl } = this;
+    if (arrays === this.whole) {
+      for (const [location, [numbers, size]] of this.waiting) this.load(arrays, location, numbers, size);
+      this.waiting.clear();
+    }
     gl.viewport(0, 0, width, height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -170,8 +178,8 @@ export class Drawing {
     // What only one of the shaders has is null for the other, which is set to no effect.
     gl.uniform2fv(at.range, view.range);
     for (const name of ["even", "mesh", "lit"]) gl.uniform1i(at[name], view[name]);
-    gl.bindVertexArray(array);
-    gl.drawArrays(gl.TRIANGLES, 0, count);
+    gl.bindVertexArray(arrays.array);
+    gl.drawArrays(gl.TRIANGLES, 0, arrays.count);
   }
 
   /// With so many pixels. `moving`: soon another one follows, so that of a large mesh a rough one does.

@@ -1,13 +1,14 @@
 // The fields of a result: what may colour its triangles, by one number each or one at each corner.
 
-/// Fields by key: `name`, `corners` (1 or 3 numbers a triangle), `values()`, and `atPoints()`, the same without jumps.
+/// Fields by key: `name`, `corners` (1 or 3 numbers a triangle), `values()`, `atPoints()`, the same without jumps, and
+/// `parts`, the keys of the components whose size it is: within a triangle they are linear, their size is not.
 export function fieldsOf(result) {
   const { mesh, displacement, stress = {}, principal, von_mises: vonMises, error_squares: squares } = result;
   const count = mesh.triangles.length / 3, fields = new Map();
   const areas = once(() => areasOf(mesh));
-  const add = (key, name, corners, values, atPoints) => {
+  const add = (key, name, corners, values, atPoints, parts) => {
     const own = once(values);
-    fields.set(key, { key, name, corners, values: own, atPoints: once(atPoints ?? (() => averaged(mesh, areas(), own(), corners))) });
+    fields.set(key, { key, name, corners, parts, values: own, atPoints: once(atPoints ?? (() => averaged(mesh, areas(), own(), corners))) });
   };
   const made = (length, entry) => () => Float64Array.from({ length }, (_, i) => entry(i));
   const components = isBody(result) ? 2 : 1, corners = displacement.values.length / components / count;
@@ -19,7 +20,7 @@ export function fieldsOf(result) {
   } else {
     if (q) add("von_mises", "von Mises stress", 1, () => vonMises);
     const size = (list) => (i) => Math.hypot(list[2 * i], list[2 * i + 1]);
-    add("displacement", "size of the displacement |u|", corners, made(u.length / 2, size(u)), made(points.length / 2, size(points)));
+    add("displacement", "size of the displacement |u|", corners, made(u.length / 2, size(u)), made(points.length / 2, size(points)), ["displacement_x", "displacement_y"]);
     ["x", "y"].forEach((axis, c) => add(`displacement_${axis}`, `displacement u${axis}`, corners, made(u.length / 2, (i) => u[2 * i + c]), made(points.length / 2, (i) => points[2 * i + c])));
     if (q) ["xx", "yy", "xy"].forEach((axes, c) => add(`stress_${axes}`, `stress σ${axes}`, 1, made(count, (t) => q[3 * t + c])));
     if (q) ["first", "second"].forEach((which, c) => add(`principal_${which}`, `principal stress σ${"₁₂"[c]}`, 1, made(count, (t) => principal[2 * t + c])));

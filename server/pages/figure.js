@@ -102,10 +102,15 @@ export class Figure {
 
   /// The values at corners; of the difference to the other result if there is one.
   values(smooth) {
-    const { triangles } = this.result.mesh, own = valueAt(this.field, smooth, triangles);
-    if (!this.other) return own;
-    const others = valueAt(this.other.fields.get(this.field.key), smooth, triangles);
-    return (i) => own(i) - others(i);
+    const [own, others] = [this, this.other].map((figure) => figure && valueAt(figure.fields.get(this.field.key), smooth, this.result.mesh.triangles));
+    return others ? (i) => own(i) - others(i) : own;
+  }
+  /// The value at a place, where `mixed` takes what is linear.
+  valueAt(mixed) {
+    const { field: { key }, other, view: { smooth }, result: { mesh: { triangles } } } = this;
+    const of = ({ fields }) => Math.hypot(...fields.get(key).parts.map((part) => mixed(valueAt(fields.get(part), smooth, triangles))));
+    if (!this.field.parts) return mixed(this.at);
+    return of(this) - (other ? of(other) : 0);
   }
 
   /// Where the triangles are, if that has changed.
@@ -131,7 +136,7 @@ export class Figure {
 
   /// The scale of what the figures show, or the range that was fixed.
   scaleWith(others) {
-    const { fixed, low, high } = this.view, all = [this, ...others];
+    const { fixed, low, high } = this.view, all = [this, ...others.filter(({ field }) => field.key === this.field.key)];
     return fixed && high > low ? { low, high, diverges: low < 0 && high > 0 } : scaleOf(Math.min(...all.map(({ least }) => least)), Math.max(...all.map(({ most }) => most)));
   }
 

@@ -2,6 +2,8 @@
 
 import { colour } from "/pages/colours.js";
 import { element } from "/pages/element.js";
+import { drawMarks } from "/pages/overlay.js";
+import { SvgPen } from "/pages/pen.js";
 
 const bands = 32;
 export const mostTriangles = 200000; // of an SVG that other programs still open
@@ -47,16 +49,17 @@ export function svgOf(figure) {
     if (paths.at(-1)?.[0] === band) paths.at(-1)[1].push(path);
     else paths.push([band, [path]]);
   }
-  const foundation = shape.foundation().map((line) => `<path class="f" d="M${line.map(place).join("L")}"/>`).join("");
+  const pen = new SvgPen();
+  drawMarks(figure, pen);
   const rgb = (band) => `rgb(${colour(band / (bands - 1), diverges).join(",")})`;
   const styles = Array.from({ length: bands }, (_, band) => `.c${band}{fill:${rgb(band)};stroke:${rgb(band)}}`).join("");
   const bar = Array.from({ length: bands }, (_, band) => `<rect class="c${band}" x="${width + 10}" y="${30 + ((bands - 1 - band) * (height - 20)) / bands}" width="14" height="${(height - 20) / bands}"/>`);
   const ticks = [...figure.ticks.children].map((tick, i) => `<text x="${width + 30}" y="${34 + (i / 4) * (height - 20)}">${escaped(tick.textContent)}</text>`);
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width + 100} ${height + 24}" width="${width + 100}" height="${height + 24}">
 <title>${escaped(figure.title.textContent)}</title>
-<style>text{font:13px system-ui,sans-serif;fill:#222}path{stroke-width:.5;stroke-linejoin:round}.l{fill:none;stroke:#000;stroke-opacity:.3}.f{fill:none;stroke:#000;stroke-width:1.6;stroke-dasharray:7 4}${styles}</style>
+<style>text{font:13px system-ui,sans-serif;fill:#222}path{stroke-width:.5;stroke-linejoin:round}.l{fill:none;stroke:#000;stroke-opacity:.3}${styles}</style>
 <rect width="100%" height="100%" fill="#fff"/><text x="10" y="18">${escaped(figure.title.textContent)}</text>
-<g transform="translate(0 24)">${paths.map(([band, own]) => `<path class="${band < 0 ? "l" : `c${band}`}" d="${own.join("")}"/>`).join("\n")}${foundation}</g>
+<g transform="translate(0 24)">${paths.map(([band, own]) => `<path class="${band < 0 ? "l" : `c${band}`}" d="${own.join("")}"/>`).join("\n")}${pen.drawn.join("\n")}</g>
 ${bar.join("")}${ticks.join("")}
 </svg>
 `;

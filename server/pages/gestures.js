@@ -1,13 +1,15 @@
 // What moves a figure: pointers, fingers, the wheel and keys set its view.
 
+import { within } from "/pages/view.js";
+
 export function listen(figure) {
   const { frame, view, readout } = figure, fingers = new Map();
   const place = (event) => { const box = frame.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
   const pan = (dx, dy) => view.set({ x: view.x + dx / frame.clientWidth, y: view.y + dy / frame.clientHeight });
-  const turn = (dx, dy) => view.set({ turn: view.turn + dx * 0.008, tilt: Math.min(Math.PI / 2, Math.max(0.02, view.tilt + dy * 0.008)) });
+  const turn = (dx, dy) => view.set({ turn: view.turn + dx * 0.008, tilt: within("tilt", view.tilt + dy * 0.008) });
   /// What is at (x, y) stays there.
   const zoom = (factor, [x, y]) => {
-    const own = Math.min(1e4, Math.max(0.2, view.zoom * factor)) / view.zoom, [w, h] = [frame.clientWidth, frame.clientHeight];
+    const own = within("zoom", view.zoom * factor) / view.zoom, [w, h] = [frame.clientWidth, frame.clientHeight];
     const kept = (offset, at, whole) => (at - own * (at - (whole / 2 + offset * whole)) - whole / 2) / whole;
     view.set({ zoom: view.zoom * own, x: kept(view.x, x, w), y: kept(view.y, y, h) });
   };
@@ -40,5 +42,6 @@ export function listen(figure) {
     if (!does || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     does();
+    readout.follow(middle);
   };
 }

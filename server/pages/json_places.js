@@ -1,5 +1,7 @@
 // Where things stand in the text of a JSON document, also of one that is not finished.
 
+const deepest = 64; // levels, which is what the service reads
+
 const escaped = (key) => key.replaceAll("~", "~0").replaceAll("/", "~1");
 
 /// `places`: [start, end] of every value and `keys` of every member's name, by JSON pointer; `fault`: where the text is
@@ -7,9 +9,10 @@ const escaped = (key) => key.replaceAll("~", "~0").replaceAll("/", "~1");
 /// written there, the text of it from `start` to `end`.
 export function placesOf(text, caret = -1) {
   const places = new Map(), keys = new Map();
-  let i = 0, fault = null, at = null;
+  let i = 0, depth = 0, fault = null, at = null;
   const blank = () => { while (i < text.length && " \t\r\n".includes(text[i])) ++i; };
-  const fail = (what) => { fault ??= { place: Math.min(i, text.length), what }; };
+  const failAt = (place, what) => { fault ??= { place: Math.min(place, text.length), what }; };
+  const fail = (what) => failAt(i, what);
   const note = (kind, pointer, start, end) => { if (caret >= start && caret <= end) at = { kind, pointer, start, end }; };
 
   function string() {
@@ -27,7 +30,11 @@ export function placesOf(text, caret = -1) {
     while (i < text.length && !",]}: \t\r\n".includes(text[i])) ++i;
     const word = text.slice(start, i);
     if (!word) fail("a value is missing");
-    else try { return JSON.parse(word); } catch { i = start; fail("this is no JSON value"); i = start + word.length; }
+    else try {
+      const own = JSON.parse(word);
+      if (own !== Infinity && own !== -Infinity) return own;
+      failAt(start, "this number is too large");
+    } catch { failAt(start, "this is no JSON value"); }
     return null;
   }
 
@@ -52,12 +59,15 @@ export function placesOf(text, caret = -1) {
     blank();
     const start = i;
     let own;
-    if (text[i] === "{") { own = {}; list("}", (_, from) => member(pointer, from, own)); }
+    if (depth === deepest && "[{".includes(text[i])) { fail(`it is nested deeper than ${deepest} levels`); i = text.length; }
+    ++depth;
+    if (text[i] === "{") { own = Object.create(null); list("}", (_, from) => member(pointer, from, own)); }
     else if (text[i] === "[") { own = []; list("]", (count, from) => { own[count] = value(`${pointer}/${count}`, from); }); }
     else {
       own = scalar();
       note("value", pointer, start === i ? before : start, i);
     }
+    --depth;
     places.set(pointer, [start, i]);
     return own;
   }
@@ -73,6 +83,7 @@ export function placesOf(text, caret = -1) {
     const key = text[i] === '"' ? string() : text.slice(start, i).trim();
     note("key", pointer, start, i);
     const own = `${pointer}/${escaped(key)}`;
+    if (keys.has(own)) failAt(start, "this member is there twice");
     keys.set(own, [start, i]);
     blank();
     if (text[i] !== ":") return fail(": is missing");

@@ -12,16 +12,29 @@ function stroke(pen, colour, width) {
   pen.stroke();
 }
 
-export function drawOver({ over, frame, dense, shape, view, readout: { triangle } }) {
-  const pen = over.getContext("2d"), { mesh, contact = {}, stress, principal } = shape.result;
-  const style = getComputedStyle(frame), colour = (name) => style.getPropertyValue(`--${name}`);
+export function drawOver(figure) {
+  const { over, frame, dense, shape, readout: { triangle } } = figure, pen = over.getContext("2d");
   pen.setTransform(dense, 0, 0, dense, 0, 0);
   pen.clearRect(0, 0, frame.clientWidth, frame.clientHeight);
   pen.lineCap = pen.lineJoin = "round";
+  drawMarks(figure, pen);
+  if (triangle >= 0) {
+    pen.beginPath();
+    shape.cornersOf(triangle).forEach((corner) => pen.lineTo(...corner));
+    pen.closePath();
+    stroke(pen, "#fff", 3.5);
+    stroke(pen, "#000", 1.5);
+  }
+}
+
+/// All but the triangle under the pointer.
+export function drawMarks({ frame, shape, view }, pen) {
+  const { mesh, contact = {}, stress, principal } = shape.result;
+  const style = getComputedStyle(frame), colour = (name) => style.getPropertyValue(`--${name}`);
   for (const [name, edges] of Object.entries(mesh.boundary)) {
     pen.beginPath();
     trace(pen, shape, edges);
-    if (name in contact) stroke(pen, colour("accent"), 2.5);
+    if (Object.hasOwn(contact, name)) stroke(pen, colour("accent"), 2.5);
     else if (!shape.surface) stroke(pen, colour("quiet"), 1.2);
   }
   pen.beginPath();
@@ -31,13 +44,6 @@ export function drawOver({ over, frame, dense, shape, view, readout: { triangle 
   pen.setLineDash([]);
   if (view.nodes && stress) drawNodes(pen, colour, shape);
   if (view.crosses && principal) drawCrosses(pen, colour, shape);
-  if (triangle >= 0) {
-    pen.beginPath();
-    shape.cornersOf(triangle).forEach((corner) => pen.lineTo(...corner));
-    pen.closePath();
-    stroke(pen, "#fff", 3.5);
-    stroke(pen, "#000", 1.5);
-  }
 }
 
 /// Edges that follow each other are one line, with corners that are not told apart left out.
@@ -56,6 +62,7 @@ const isSeen = ({ projection: { width, height } }, [x, y]) => x >= 0 && y >= 0 &
 /// Where the unknowns sit: of the stress a bar across its edge, or inside a square, of the displacement a disc, of the clearance a ring.
 function drawNodes(pen, colour, shape) {
   const nodes = (shape.nodes ??= nodesOf(shape.result)), ink = colour("ink"), ground = colour("paper");
+  const size = Math.min(1, Math.max(0.3, shape.edge / 30)); // marks of a fine mesh are small
   const marks = (places, draw) => {
     const seen = [];
     for (const [t, weights] of places) {
@@ -69,31 +76,31 @@ function drawNodes(pen, colour, shape) {
   marks(nodes.stress, ([x, y], corners, weights) => {
     const opposite = weights.indexOf(0);
     pen.beginPath();
-    if (opposite < 0) pen.rect(x - 2.5, y - 2.5, 5, 5);
+    if (opposite < 0) pen.rect(x - 2.5 * size, y - 2.5 * size, 5 * size, 5 * size);
     else {
       const [a, b] = [corners[(opposite + 1) % 3], corners[(opposite + 2) % 3]], long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
-      const [nx, ny] = [((b[1] - a[1]) / long) * 5, ((a[0] - b[0]) / long) * 5];
+      const [nx, ny] = [b[1] - a[1], a[0] - b[0]].map((side) => (5 * size * side) / long);
       pen.moveTo(x - nx, y - ny);
       pen.lineTo(x + nx, y + ny);
     }
-    stroke(pen, ground, 4);
-    stroke(pen, ink, 1.6);
+    stroke(pen, ground, 4 * size);
+    stroke(pen, ink, 1.6 * size);
   });
   marks(nodes.displacement, ([x, y]) => {
     pen.beginPath();
-    pen.arc(x, y, 2.6, 0, 7);
+    pen.arc(x, y, 2.6 * size, 0, 7);
     pen.fillStyle = ink;
-    stroke(pen, ground, 1.6);
+    stroke(pen, ground, 1.6 * size);
     pen.fill();
   });
   for (const [a, b, way] of nodes.clearance) {
     const [from, to] = [shape.pixelOfPoint(a), shape.pixelOfPoint(b)], at = from.map((each, c) => each + way * (to[c] - each));
     if (!isSeen(shape, at)) continue;
     pen.beginPath();
-    pen.arc(...at, 4.5, 0, 7);
+    pen.arc(...at, 4.5 * size, 0, 7);
     pen.fillStyle = ground;
     pen.fill();
-    stroke(pen, colour("accent"), 2.2);
+    stroke(pen, colour("accent"), 2.2 * size);
   }
 }
 

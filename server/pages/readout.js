@@ -17,6 +17,12 @@ export class Readout {
     else this.tell(t, this.pointer);
     if (before !== t) drawOver(figure);
   }
+  /// Of what is moved by keys the place in the middle is told.
+  follow(place) {
+    this.pointer ??= place;
+    this.whole.ariaLive = "polite";
+    this.figure.schedule();
+  }
   /// The figure has changed.
   again() {
     if (this.pointer) this.look(...this.pointer);
@@ -29,13 +35,13 @@ export class Readout {
 
   /// A picture is parallel: shares of the corners are the same on the screen and in the body.
   tell(t, [x, y]) {
-    const { figure: { shape, at, looked, title } } = this, [a, b, c] = shape.cornersOf(t);
+    const { figure, figure: { shape, looked, title } } = this, [a, b, c] = shape.cornersOf(t);
     const twice = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
     const second = ((x - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (y - a[1])) / twice, third = ((b[0] - a[0]) * (y - a[1]) - (x - a[0]) * (b[1] - a[1])) / twice;
     const shares = [1 - second - third, second, third];
     const { points, triangles } = shape.result.mesh, mixed = (own) => shares.reduce((sum, share, k) => sum + share * own(3 * t + k), 0);
     const place = [0, 1].map((own) => mixed((i) => points[2 * triangles[i] + own]));
-    const value = looked.even ? at(3 * t) : mixed(at);
+    const value = figure.valueAt(looked.even ? (own) => own(3 * t) : mixed);
     this.whole.replaceChildren(element("span", {}, `x ${short(place[0])}`), element("span", {}, `y ${short(place[1])}`),
       element("span", {}, `triangle ${t}`), element("strong", {}, `${title.textContent} ${short(value, 6)}`));
     Object.assign(this.whole.dataset, { triangle: t, value, x: place[0], y: place[1] });

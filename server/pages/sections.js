@@ -30,10 +30,10 @@ const verdictOf = ({ relative, guaranteed, unmet = [] }) => [
 export function boundSection({ error_bound: bound, notes = [], advice }) {
   if (!bound) return section("bound", "Error bound", element("p", {}, "Nothing finite is known of the error."), notesOf(notes, advice));
   const { value, energy_lower: lower, energy_upper: upper } = bound;
-  const squares = Object.values(bound.parts).map((part) => part * part), whole = squares.reduce((a, b) => a + b, 0) || 1;
+  const there = Object.entries(bound.parts).filter(([, part]) => part), squares = there.map(([, part]) => part * part), whole = squares.reduce((a, b) => a + b, 0);
   return section("bound", "Error bound", verdictOf(bound),
     element("p", {}, `The energy of the exact solution lies between ${short(lower, 8)} and ${short(upper, 8)}. The bound itself is ${short(value, 6)}; of its square come`),
-    element("ul", { className: "shares" }, Object.entries(bound.parts).map(([name, part], i) => {
+    element("ul", { className: "shares" }, there.map(([name, part], i) => {
       const bar = element("span", { className: "bar" });
       bar.style.inlineSize = `${(100 * squares[i]) / whole}%`;
       return element("li", {}, element("span", { className: "name" }, `${shareOf(squares[i] / whole)} from ${parts[name] ?? name}`), element("span", { className: "track" }, bar), element("span", { className: "quiet small" }, `${name} ${short(part, 4)}`));
@@ -147,11 +147,13 @@ export function studySection({ rows, rates }) {
     numbers("Numbers of the study", table("Study", keys.map(inWords), rows.map((row) => keys.map((key) => row[key] ?? "–")))));
 }
 
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
 /// A problem with what one entry of its sweep changes (RFC 7396).
 function alone({ sweep, title, ...problem }, own) {
   const patched = (before, patch) => {
-    if (patch?.constructor !== Object) return patch;
-    const made = { ...(before?.constructor === Object && before) };
+    if (!isObject(patch)) return patch;
+    const made = Object.assign(Object.create(null), isObject(before) && before);
     for (const [name, value] of Object.entries(patch)) {
       if (value === null) delete made[name];
       else made[name] = patched(made[name], value);

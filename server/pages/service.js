@@ -1,5 +1,6 @@
 // Asks the service. Where it wants a token, that is asked for once and kept as long as the tab is open.
 
+import { asked } from "/pages/dialog.js";
 import { element } from "/pages/element.js";
 
 /// A refusal of the service in its own words (RFC 9457).
@@ -13,23 +14,15 @@ export class Refusal extends Error {
 
 let asking = null;
 
-/// Resolves when a token was entered.
+/// Asks for a token, once for all who wait for it; false if there was none. Headers take visible ASCII only.
 function askForToken(why) {
-  asking ??= new Promise((entered) => {
-    const token = element("input", { type: "password", autocomplete: "off", required: true, className: "code", id: "token" });
-    const form = element("form", { method: "dialog" }, element("h2", {}, "A token, please"), element("p", {}, why),
-      element("p", {}, element("label", { htmlFor: "token" }, "Token"), " ", token), element("button", { className: "main" }, "Go on"));
-    const dialog = element("dialog", {}, form);
-    form.onsubmit = (event) => {
-      event.preventDefault();
-      sessionStorage.setItem("token", token.value.trim());
-      dialog.close();
-      dialog.remove();
-      asking = null;
-      entered();
-    };
-    document.body.append(dialog);
-    dialog.showModal();
+  if (asking) return asking;
+  const token = element("input", { type: "password", autocomplete: "off", required: true, pattern: "\\s*[!-~]+\\s*", title: "Letters, digits and signs of ASCII, without blanks", className: "code", id: "token" });
+  asking = asked([element("h2", {}, "A token, please"), element("p", {}, why), element("p", {}, element("label", { htmlFor: "token" }, "Token"), " ", token)], "Go on", "Without one").then((entered) => {
+    asking = null;
+    if (entered) sessionStorage.setItem("token", token.value.trim());
+    dispatchEvent(new Event("tokenchange"));
+    return entered;
   });
   return asking;
 }
@@ -59,8 +52,7 @@ export async function ask(path, { method = "GET", headers = {}, body, signal } =
     const reply = await reached(fetch(path, { method, headers: withToken(headers), body, signal, cache: "no-store" }));
     if (reply.ok) return reply;
     const refusal = await refusalOf(reply);
-    if (reply.status !== 401) throw refusal;
-    await askForToken(refusal.message);
+    if (reply.status !== 401 || !await askForToken(refusal.message)) throw refusal;
   }
 }
 

@@ -49,11 +49,14 @@ export class Shape {
     this.projection = new Projection(this.view, this.surface, width, height, body ? size.map((half) => half + 0.5 * liftDrawn) : size, body ? 0 : liftDrawn);
   }
 
+  /// The pixels of a usual edge.
+  get edge() {
+    return Math.sqrt((8 * this.size[0] * this.size[1]) / this.count) * this.projection.scale;
+  }
   /// Whether triangles of a surface meet. Where it jumps one sees through it, which of small triangles would leave more
   /// holes than surface; they meet until one is near enough to see the jumps.
   get joined() {
-    const edge = Math.sqrt((8 * this.size[0] * this.size[1]) / this.count);
-    return this.view.smooth || edge * this.projection.scale < smallestJumping;
+    return this.view.smooth || this.edge < smallestJumping;
   }
 
   /// Where the corners of the triangles are before they move.

@@ -10,10 +10,19 @@ function themeButton() {
     document.documentElement.dataset.theme = theme;
     localStorage.setItem("theme", theme);
     dispatchEvent(new Event("themechange"));
-  }, { className: "last", ariaLabel: "Change between dark and light" });
+  }, { ariaLabel: "Change between dark and light" });
   const name = () => { own.textContent = isDark() ? "Light" : "Dark"; };
   addEventListener("themechange", name);
   name();
+  return own;
+}
+
+/// Who has a token may enter another one.
+function tokenButton() {
+  const own = button("Forget token", () => { sessionStorage.removeItem("token"); location.reload(); });
+  const show = () => { own.hidden = !sessionStorage.getItem("token"); };
+  addEventListener("tokenchange", show);
+  show();
   return own;
 }
 
@@ -24,7 +33,7 @@ export function shell() {
   const brand = element("a", { href: "/", className: "brand" }, element("img", { src: "/pages/icon.svg", alt: "" }), "Signorini");
   document.body.prepend(
     element("a", { className: "skip", href: "#main" }, "To the content"),
-    element("header", {}, element("nav", { className: "top", ariaLabel: "Pages" }, brand, link("/v1/solves", "Solves"), link("/docs", "Interface"), themeButton())));
+    element("header", {}, element("nav", { className: "top", ariaLabel: "Pages" }, brand, link("/v1/solves", "Solves"), link("/docs", "Interface"), element("span", { className: "row last" }, tokenButton(), themeButton()))));
   const main = document.getElementById("main");
   main.replaceChildren();
   return main;

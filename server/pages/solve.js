@@ -2,6 +2,7 @@
 
 import { decode } from "/pages/cbor.js";
 import { agree, controlsOf } from "/pages/controls.js";
+import { asked } from "/pages/dialog.js";
 import { button, bytes, counted, element, isOpen, progressInWords, save, seconds, state, tagLinks } from "/pages/element.js";
 import { resultOnLevel } from "/pages/fields.js";
 import { Figure } from "/pages/figure.js";
@@ -25,6 +26,7 @@ function showHead(solve) {
   document.title = `${solve.title || "A solve"} · Signorini`;
   const { summary, error, progress, links } = solve;
   const dismiss = button(isOpen(solve) ? "Cancel" : "Delete", async () => {
+    if (!isOpen(solve) && !await asked(["Delete “", element("bdi", {}, solve.title || "without a title"), "” and its result?"], "Delete", "Keep")) return;
     dismiss.disabled = true;
     try {
       await ask(links.self, { method: "DELETE" });
@@ -66,12 +68,17 @@ async function showResult(solve) {
   picture.replaceChildren(said);
   const result = await persist(() => resultOf(solve, (count) => { said.textContent = `Loading the result … ${bytes(count)}`; }), (away) => { if (away) said.textContent = isAway; });
   const results = [result], solves = [solve];
-  if (view.with) {
-    solves.push(await getJson(`/v1/solves/${encodeURIComponent(view.with)}`));
-    results.push(await resultOf(solves[1]));
+  let missing = null;
+  if (view.with) try {
+    const other = await getJson(`/v1/solves/${encodeURIComponent(view.with)}`);
+    results.push(await resultOf(other));
+    solves.push(other);
+  } catch (error) {
+    missing = element("p", { className: "notice bad", role: "alert" }, `The other solve cannot be shown: ${error.message}`);
   }
   const { summary } = solve, steps = summary.levels && stepsOf(summary), isAlone = results.length === 1;
   const [figure] = showPictures(results, solves, isAlone ? steps : null);
+  if (missing) picture.prepend(missing);
   if (steps && isAlone) stepThrough(figure, result, steps, solve.links);
   sections.replaceChildren(...[boundSection(summary), summary.certified && certifiedSection(summary.certified), result.quantities && quantitiesSection(result.quantities, fileLink(solve.links.quantities_csv, "Quantities CSV")), contactSection(result, summary), history.whole, summary.levels && levelsSection(summary, view, steps),
     result.study && studySection(result.study), result.sweep && sweepSection(result, view, (problem) => pose(JSON.stringify(problem)).catch(failed)), figuresSection(summary)].filter(Boolean));
@@ -158,6 +165,9 @@ try {
   if (isOpen(current)) picture.replaceChildren(element("p", { className: "quiet" }, "The picture comes when it is solved."));
   await follow(current.links.events, tell, (away) => { history.whole.classList.toggle("away", away); if (away) history.end.textContent = isAway; else if (isOpen(current)) history.end.textContent = ""; });
 } catch (error) {
-  if (!current) head.replaceChildren(element("h1", {}, "A solve"));
+  if (!current) {
+    head.replaceChildren(element("h1", {}, "A solve"));
+    history.whole.remove();
+  }
   failed(error);
 }

@@ -1,5 +1,6 @@
 // The solves: what waits, runs and has ended, as it happens.
 
+import { asked } from "/pages/dialog.js";
 import { boundInWords, button, column, counted, element, isOpen, percent, progressInWords, short, state, tagLinks } from "/pages/element.js";
 import { ask, getJson, isAway, Unreached } from "/pages/service.js";
 import { shell } from "/pages/shell.js";
@@ -18,7 +19,7 @@ const tag = element("input", { type: "search", value: query.get("tag") ?? "", pl
 const cancel = button("Cancel", () => dismiss(chosen().filter(({ solve }) => isOpen(solve))));
 const remove = button("Delete", async () => {
   const own = chosen().filter(({ solve }) => !isOpen(solve));
-  if (await confirmed(own.length === 1 ? `Delete “${own[0].solve.title || "without a title"}” and its result?` : `Delete ${own.length} solves and their results?`)) dismiss(own);
+  if (await asked(own.length === 1 ? ["Delete “", element("bdi", {}, own[0].solve.title || "without a title"), "” and its result?"] : `Delete ${own.length} solves and their results?`, "Delete", "Keep")) dismiss(own);
 });
 const all = element("input", { type: "checkbox", ariaLabel: "Choose all" });
 const compare = element("a", { className: "button", hidden: true }, "Side by side");
@@ -92,13 +93,13 @@ async function look() {
   if (looking) { again = true; return; }
   looking = true;
   try {
-    const { solves, links } = await getJson(`/v1/solves?${new URLSearchParams({ ...filters(), limit: count })}`);
-    const own = solves.map(show);
+    const { found, isAll } = await newest();
+    const own = found.map(show);
     if (own.length !== body.children.length || own.some((row, i) => row !== body.children[i])) body.replaceChildren(...own);
     for (const [id, { row }] of rows) if (!row.isConnected) rows.delete(id);
-    more.hidden = !links.next || count >= 1000;
-    const open = solves.filter(isOpen).length;
-    said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : Object.keys(filters()).length ? "None is like that." : "Nothing was posted yet.";
+    more.hidden = isAll || count >= 1000;
+    const open = found.filter(isOpen).length;
+    said.textContent = own.length ? `${short(own.length)} shown${open ? `, ${open} of them not ended` : ""}.` : Object.keys(filters()).length ? isAll ? "None is like that." : "None of the newest is like that." : "Nothing was posted yet.";
   } catch (error) {
     said.textContent = error instanceof Unreached ? isAway : error.message;
   }
@@ -107,21 +108,22 @@ async function look() {
   if (again) { again = false; look(); }
 }
 
+/// The newest solves that are meant. A search by title reads so many titles in each answer, and not for ever.
+async function newest() {
+  let found = [], next = `/v1/solves?${new URLSearchParams({ ...filters(), limit: count })}`;
+  for (let i = 0; next && found.length < count && i < count / 10; ++i) {
+    const { solves, links } = await getJson(next);
+    found = found.concat(solves);
+    ({ next } = links);
+  }
+  return { found, isAll: !next };
+}
+
 /// DELETE cancels what has not ended and removes what has.
 async function dismiss(own) {
   const refused = (await Promise.allSettled(own.map(({ solve }) => ask(solve.links.self, { method: "DELETE" })))).filter((each) => each.status === "rejected");
   await look();
   if (refused.length) said.textContent = refused[0].reason.message;
-}
-
-function confirmed(question) {
-  return new Promise((answer) => {
-    const yes = element("button", { className: "main", value: "yes" }, "Delete"), no = element("button", { value: "no" }, "Keep");
-    const dialog = element("dialog", {}, element("form", { method: "dialog" }, element("p", {}, question), element("div", { className: "row" }, yes, no)));
-    dialog.onclose = () => { dialog.remove(); answer(dialog.returnValue === "yes"); };
-    document.body.append(dialog);
-    dialog.showModal();
-  });
 }
 
 all.onchange = () => {

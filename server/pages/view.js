@@ -5,12 +5,21 @@ const defaults = {
   mesh: true, nodes: false, crosses: false, smooth: false, fixed: false, low: null, high: null, entry: 0, level: 0, with: "", difference: false,
 };
 
+const ranges = { zoom: [0.2, 1e4], tilt: [0.02, Math.PI / 2], lift: [0, Infinity] };
+
+/// The nearest value that the member may have.
+export function within(name, number) {
+  const [least, most] = ranges[name] ?? [-Infinity, Infinity];
+  return Math.min(most, Math.max(least, number));
+}
+
 /// A value of the address as the kind that the member has.
 function read(name, text) {
   if (typeof defaults[name] === "boolean" || name === "surface") return text === "1";
   if (name === "field" || name === "with") return text;
   const number = Number(text);
-  return Number.isFinite(number) ? number : defaults[name];
+  if (text === "" || !Number.isFinite(number)) return defaults[name];
+  return name === "entry" || name === "level" ? Math.trunc(number) : within(name, number);
 }
 
 export class View {

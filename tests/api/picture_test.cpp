@@ -114,6 +114,8 @@ TEST(Picture, FollowsEachEdgeOnce) {
 TEST(Picture, HasNoColourForSignsThatAreNotThere) {
   EXPECT_EQ(ColourMap(-1, 3).low(), -3);
   EXPECT_EQ(ColourMap(-1, 3).colour(0), "#2166ac");
+  EXPECT_EQ(ColourMap(-1e-3, 3).low(), -1e-3);
+  EXPECT_EQ(ColourMap(-3, 1e-3).high(), 1e-3);
   EXPECT_EQ(ColourMap(1, 3).low(), 1);
   EXPECT_EQ(ColourMap(1, 3).colour(0), "#440154");
   EXPECT_EQ(ColourMap(1, 3).colour(ColourMap::kBands - 1), "#fde725");

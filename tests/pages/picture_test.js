@@ -16,6 +16,10 @@ before(async () => {
   solves.fine = await service.solve({ ...membrane, mesh: { divisions: [96, 96], pattern: "right" }, solver: { method: "active_set" } });
   solves.linear = await service.solve({ ...membrane, scheme: "conforming", solver: { method: "active_set" } });
   solves.body = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" } });
+  const block = await service.example("elastic-block");
+  solves.conforming = await service.solve({ ...block, scheme: "conforming", mesh: { divisions: [4, 2], pattern: "crossed" } });
+  const tilted = { ...block, mesh: { divisions: [8, 4], pattern: "crossed" }, sweep: [1, 2, 3].map((k) => ({ material: { young: 100 * k } })) };
+  solves.sweep = { id: await service.solve(tilted), sweep: tilted.sweep };
   solves.other = await service.solve({ ...(await service.example("elastic-block")), mesh: { divisions: [8, 4], pattern: "crossed" }, material: { young: 100, poisson: 0.3, plane: "strain" } });
 });
 after(() => end(service, browser));
@@ -270,7 +274,7 @@ test("The picture is kept as PNG and SVG", async () => {
 test("The foundation lies beyond an elastic body by its gap, as many times too far as the body is deformed", async () => {
   await open(solves.body, "lift=3");
   const [svg] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
-  const lines = [...(await readFile(await svg.path(), "utf8")).matchAll(/<path class="f" d="M([^"]*)"/g)].map(([, path]) => path.split("L").map((place) => place.split(" ").map(Number)));
+  const lines = [...(await readFile(await svg.path(), "utf8")).matchAll(/<path [^>]*stroke-dasharray="7 4" d="M([^"]*)"/g)].map(([, path]) => path.split("L").map((place) => place.split(" ").map(Number)));
   const { contact: { bottom } } = await result(solves.body, "contact");
   assert.deepEqual(lines.map((line) => line.length), [bottom.points.length]);
   // The bottom is straight and level: what is across tells how large the picture is.
@@ -292,7 +296,7 @@ test("The foundation is that of the service's own picture, also where its direct
     assert.equal(points.filter(([x]) => x === 1).length, rows);
     await open(id, "lift=4");
     const [file] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
-    const [, path] = (await readFile(await file.path(), "utf8")).match(/<path class="f" d="M([^"]*)"/), own = path.split("L").map((place) => place.split(" ").map(Number));
+    const [, path] = (await readFile(await file.path(), "utf8")).match(/<path [^>]*stroke-dasharray="7 4" d="M([^"]*)"/), own = path.split("L").map((place) => place.split(" ").map(Number));
     // Its places are relative, each to the one before.
     const [, steps] = (await (await fetch(`${service.url}/v1/solves/${id}/picture.svg?field=von_mises&deformed=4`)).text()).match(/<path class="foundation" d="M([^"]*)"/);
     const expected = [];
@@ -456,5 +460,73 @@ test("Nothing is shown as guaranteed where nothing is", async () => {
   await page.locator("#bound .verdict.open").waitFor();
   await page.locator("#figures").waitFor();
   assert.equal(await page.locator("#certified").count(), 0);
+  wellDone();
+});
+
+test("Whatever an address says, there is a picture", async () => {
+  const { length } = solves.sweep.sweep;
+  for (const hash of ["fixed=1", "fixed=1&low=5&high=-5", "zoom=0", "zoom=1e300&tilt=99&turn=1e9", "lift=-1", "entry=1.5", "entry=-3", "entry=NaN", "field=none", "level=0.5", "low=&high=x", "with=nobody"]) {
+    await open(solves.sweep.id, hash);
+    await page.locator("#sweep").waitFor();
+    assert.equal(await page.locator(".ticks li").count(), 5, hash);
+    const entry = Number(await page.locator("#sweep select").inputValue());
+    assert.ok(Number.isInteger(entry) && entry >= 1 && entry <= length, hash);
+  }
+  await page.getByText("The other solve cannot be shown").waitFor();
+  wellDone();
+});
+
+test("The size of the displacement is that of its components wherever the pointer is", async () => {
+  await open(solves.conforming, "field=displacement&mesh=0&lift=0");
+  const { displacement: { values } } = await result(solves.conforming, "displacement");
+  const { width, height } = await frame().boundingBox();
+  let largest = 0;
+  for (const [x, y] of [[0.31, 0.47], [0.5, 0.52], [0.62, 0.44], [0.43, 0.61]]) {
+    await frame().hover({ position: { x: x * width, y: y * height } });
+    const told = await eventually(async () => { const own = await page.locator("figure .readout").first().evaluate((each) => ({ ...each.dataset })); assert.ok(own.value); return own; });
+    const { mesh } = await result(solves.conforming, "mesh"), corners = mesh.triangles[told.triangle].map((p) => mesh.points[p]);
+    const det = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]), place = [Number(told.x), Number(told.y)];
+    const shares = [0, 1, 2].map((k) => det(place, corners[(k + 1) % 3], corners[(k + 2) % 3]) / det(...corners));
+    const own = values[told.triangle], of = (c) => shares.reduce((sum, share, k) => sum + share * own[k][c], 0);
+    const expected = Math.hypot(of(0), of(1)), interpolated = shares.reduce((sum, share, k) => sum + share * Math.hypot(...own[k]), 0);
+    assert.ok(Math.abs(told.value - expected) <= 1e-6 * expected, `${told.value}, not ${expected}`);
+    largest = Math.max(largest, Math.abs(interpolated - expected) / expected);
+  }
+  assert.ok(largest > 1e-4, "the places tell both apart");
+  wellDone();
+});
+
+test("A file has all marks that the picture has", async () => {
+  await open(solves.body, "crosses=1&nodes=1&field=von_mises");
+  const saved = async () => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "SVG" }).click()]);
+    return readFile(await download.path(), "utf8");
+  };
+  const count = (text, what) => text.split(what).length - 1;
+  const all = await saved();
+  await page.getByRole("button", { name: "Principal directions" }).click();
+  const without = await saved();
+  await page.getByRole("button", { name: "Unknowns" }).click();
+  const plain = await saved();
+  assert.ok(count(all, "<path") > count(without, "<path") + 100);
+  assert.ok(count(without, "<path") > count(plain, "<path") + 100);
+  const accent = await frame().evaluate((own) => getComputedStyle(own).getPropertyValue("--accent").trim());
+  assert.equal(count(plain, `stroke="${accent}"`), 1);
+  wellDone();
+});
+
+test("Keys read the value in the middle", async () => {
+  await open(solves.body);
+  await frame().focus();
+  await page.keyboard.press("ArrowLeft");
+  await eventually(async () => assert.match(await page.locator("figure .readout").first().textContent(), /triangle \d+/));
+  wellDone();
+});
+
+test("A link that cannot be copied is not said to be", async () => {
+  await open(solves.body);
+  await page.evaluate(() => Object.defineProperty(navigator, "clipboard", { value: undefined }));
+  await page.getByRole("button", { name: "Copy link" }).click();
+  await page.getByRole("button", { name: "It is in the address bar" }).waitFor();
   wellDone();
 });

@@ -1,7 +1,10 @@
 // The list of solves, and texts of clients that look like HTML.
 
 import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { begin, drawn, end, expectWell, newPage, Service } from "./browser.js";
 
 const html = '<img src=x onerror="window.hurt=1"><script>window.hurt=1</script>&amp;"';
@@ -87,11 +90,18 @@ test("Titles, tags, names of parts and faults with HTML in them stay texts", asy
   wellDone();
 });
 
-test("A token is asked for once", async () => {
-  const { mkdtempSync, writeFileSync } = await import("node:fs");
-  const file = `${mkdtempSync("/tmp/pages-")}/tokens`;
+/// Asks for `token`, and ends with the test, also if that fails: a process that lives holds the run for ever.
+async function guardedService(test) {
+  const directory = mkdtempSync(join(tmpdir(), "pages-"));
+  const file = join(directory, "tokens");
   writeFileSync(file, `${token}\n`);
   const guarded = await Service.start("--token-file", file);
+  test.after(async () => { await guarded.end(); rmSync(directory, { recursive: true }); });
+  return guarded;
+}
+
+test("A token is asked for once", async (test) => {
+  const guarded = await guardedService(test);
   const own = await newPage(browser);
   await own.goto(`${guarded.url}/v1/solves`);
   await own.getByLabel("Token").fill("wrong-but-long-enough");
@@ -106,5 +116,68 @@ test("A token is asked for once", async () => {
   await own.getByText("succeeded").waitFor();
   await drawn(own);
   assert.deepEqual(own.faults, []);
-  await guarded.end();
+});
+
+test("A token can be given up and forgotten, and only what a request can carry is taken", async (test) => {
+  const guarded = await guardedService(test);
+  const own = await newPage(browser);
+  await own.goto(`${guarded.url}/v1/examples/given-mesh`);
+  await own.getByLabel("Token").fill("schlüssel-ключ");
+  await own.getByRole("button", { name: "Go on" }).click();
+  assert.equal(await own.evaluate(() => sessionStorage.getItem("token")), null);
+  await own.keyboard.press("Escape");
+  await own.getByRole("alert").getByText("This service wants a token").waitFor();
+  await own.reload();
+  await own.getByLabel("Token").fill(token);
+  await own.getByRole("button", { name: "Go on" }).click();
+  await own.getByText(/^Ready: /).waitFor();
+  await own.getByRole("button", { name: "Forget token" }).click();
+  await own.getByLabel("Token").waitFor();
+  assert.equal(await own.evaluate(() => sessionStorage.getItem("token")), null);
+  assert.ok(await own.getByRole("button", { name: "Forget token" }).isHidden());
+  assert.deepEqual(own.faults, []);
+});
+
+test("A title without a blank leaves the other columns in their places, and one that turns the writing only itself", async () => {
+  const problem = { ...(await service.example("given-mesh")) };
+  for (const title of ["W".repeat(200), "a" + "\u0300".repeat(180), "\u202eotua .tpircs \u2066 end"]) await service.solve({ ...problem, title, tags: ["wide"] });
+  for (const width of [820, 1280, 3840]) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.goto(`${service.url}/v1/solves?tag=wide`);
+    await page.waitForFunction(() => document.querySelectorAll(".solves tbody tr").length === 3);
+    const sides = await page.evaluate(() => [document.querySelector(".solves").closest(".card, .flush").getBoundingClientRect().right, ...[...document.querySelectorAll(".solves td")].map((own) => own.getBoundingClientRect().right)]);
+    assert.ok(sides.every((side) => side <= sides[0] + 1), `${width}: ${sides}`);
+  }
+  await page.setViewportSize({ width: 1280, height: 900 });
+  const [own] = (await service.call("/v1/solves?tag=wide&limit=1")).solves;
+  await page.goto(`${service.url}/v1/solves/${own.id}`);
+  await drawn(page);
+  await page.getByRole("button", { name: "Delete" }).click();
+  assert.equal(await page.locator("dialog bdi").textContent(), own.title);
+  await page.getByRole("dialog").getByRole("button", { name: "Keep" }).click();
+  wellDone();
+});
+
+test("A solve is deleted on its page when that is confirmed", async () => {
+  const id = await service.solve(await service.example("given-mesh"));
+  await page.goto(`${service.url}/v1/solves/${id}`);
+  await drawn(page);
+  await page.getByRole("button", { name: "Delete" }).click();
+  await page.keyboard.press("Escape");
+  assert.equal((await service.call(`/v1/solves/${id}`)).status, "succeeded");
+  await page.getByRole("button", { name: "Delete" }).click();
+  await page.getByRole("dialog").getByRole("button", { name: "Delete" }).click();
+  await page.waitForURL(`${service.url}/v1/solves`);
+  await assert.rejects(service.call(`/v1/solves/${id}`), /404/);
+  wellDone();
+});
+
+test("Parts may have any name", async () => {
+  const square = { type: "polygon", vertices: [[0, 0], [1, 0], [1, 1], [0, 1]], sides: ["__proto__", "constructor", "toString", "top"] };
+  const boundary = JSON.parse('{"__proto__": {"type": "contact", "gap": 0.01}, "constructor": {"type": "traction", "pressure": 0}, "toString": {"type": "fixed"}, "top": {"type": "fixed"}}');
+  const id = await service.solve({ ...(await service.example("elastic-block")), domain: square, mesh: { size: 0.3 }, boundary });
+  await page.goto(`${service.url}/v1/solves/${id}`);
+  await drawn(page);
+  await page.locator("#contact").getByText("__proto__").first().waitFor();
+  wellDone();
 });

@@ -62,6 +62,18 @@ test("A text that is no JSON is marked where it ceases to be", async () => {
   wellDone();
 });
 
+test("What the service does not read as JSON is marked too, however deep", async () => {
+  for (const [text, words, marked] of [
+    ['{\n  "mesh": {"size": 1e999}\n}', /line 2: this number is too large/, "1"],
+    ['{\n  "a": 1,\n  "a": 2\n}', /line 3: this member is there twice/, '"'],
+    ["[".repeat(60000), /line 1: it is nested deeper than 64 levels/, "["]]) {
+    await area().fill(text);
+    await page.getByText(words).waitFor();
+    assert.equal((await page.locator(".text mark").first().textContent())[0], marked);
+  }
+  wellDone();
+});
+
 test("The schema says what may stand at the cursor", async () => {
   await write('{"mo');
   await page.getByRole("option", { name: /^model/ }).waitFor();
