@@ -2,7 +2,7 @@
 _signorinid() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} program=${COMP_WORDS[0]} command= i
   for ((i = 1; i < COMP_CWORD; ++i)); do
-    case ${COMP_WORDS[i]} in solve | study | health | check) command=${COMP_WORDS[i]} ;; esac
+    case ${COMP_WORDS[i]} in solve | study | inf-sup | health | check) command=${COMP_WORDS[i]} ;; esac
   done
   local help flags words
   help=$("$program" $command --help 2>/dev/null) || return
@@ -13,7 +13,7 @@ _signorinid() {
   elif [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$flags" -- "$word"))
   elif [[ -z $command ]]; then
-    COMPREPLY=($(compgen -W "solve study health check" -- "$word"))
+    COMPREPLY=($(compgen -W "solve study inf-sup health check" -- "$word"))
   else
     COMPREPLY=($(compgen -f -- "$word"))
   fi

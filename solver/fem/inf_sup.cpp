@@ -1,11 +1,12 @@
 #include "fem/inf_sup.hpp"
 
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include <Spectra/SymGEigsShiftSolver.h>
-#include <Eigen/SparseCholesky>
 
-#include "progress/progress.hpp"
+#include "fem/sparse_ldlt.hpp"
 
 namespace signorini {
 namespace {
@@ -19,9 +20,11 @@ class NormProduct {
  public:
   using Scalar = double;  // Spectra asks for it
 
-  explicit NormProduct(const InfSupForms& forms) : n_(forms.multipliers), norms_(of_all_but_stress(forms)) {
-    extension_.compute(norms_.bottomRightCorner(forms.extensions, forms.extensions));
-  }
+  NormProduct(const InfSupForms& forms, Progress& progress)
+      : n_(forms.multipliers),
+        norms_(of_all_but_stress(forms)),
+        extension_(norms_.bottomRightCorner(forms.extensions, forms.extensions), progress),
+        progress_(progress) {}
 
   Eigen::Index rows() const { return n_; }
   Eigen::Index cols() const { return n_; }
@@ -29,7 +32,8 @@ class NormProduct {
     Eigen::VectorXd extended = Eigen::VectorXd::Zero(norms_.rows());
     extended.head(n_) = ConstMap(x, n_);
     const Eigen::Index w = norms_.rows() - n_;
-    extended.tail(w) = -extension_.solve((norms_.selfadjointView<Eigen::Lower>() * extended).tail(w));
+    extended.tail(w) =
+        -extension_.solve((norms_.selfadjointView<Eigen::Lower>() * extended).tail(w), progress_);
     Map(y, n_) = (norms_.selfadjointView<Eigen::Lower>() * extended).head(n_);
   }
 
@@ -41,7 +45,8 @@ class NormProduct {
 
   Eigen::Index n_;
   Sparse norms_;
-  Eigen::SimplicialLDLT<Sparse> extension_;
+  SparseLdlt extension_;
+  Progress& progress_;
 };
 
 /// y = (B A⁻¹ Bᵀ − s M)⁻¹ x for s < 0: the solution of
@@ -54,26 +59,28 @@ class ShiftedInverse {
  public:
   using Scalar = double;
 
-  ShiftedInverse(const InfSupForms& forms, Progress* progress) : forms_(forms), progress_(progress) {}
+  ShiftedInverse(const InfSupForms& forms, Progress& progress) : forms_(forms), progress_(progress) {}
 
   Eigen::Index rows() const { return forms_.multipliers; }
   Eigen::Index cols() const { return forms_.multipliers; }
   void set_shift(double shift) {
-    factor_.compute(forms_.coupled + shift * forms_.norms);
-    if (factor_.info() != Eigen::Success)
-      throw SolveError("the inf-sup constant cannot be computed, as a pivot is zero: take another mesh");
+    try {
+      factor_.emplace(forms_.coupled + shift * forms_.norms, progress_);
+    } catch (const SingularPivot& singular) {
+      throw SolveError(std::string("the inf-sup constant cannot be computed, as ") + singular.what() +
+                       ": take another mesh");
+    }
   }
   void perform_op(const double* x, double* y) const {
-    if (progress_) progress_->check();
     Eigen::VectorXd load = Eigen::VectorXd::Zero(forms_.coupled.rows());
     load.segment(forms_.stresses, rows()) = -ConstMap(x, rows());
-    Map(y, rows()) = factor_.solve(load).segment(forms_.stresses, rows());
+    Map(y, rows()) = factor_->solve(load, progress_).segment(forms_.stresses, rows());
   }
 
  private:
   const InfSupForms& forms_;
-  Progress* progress_;
-  Eigen::SimplicialLDLT<Sparse> factor_;
+  Progress& progress_;
+  std::optional<SparseLdlt> factor_;
 };
 
 /// The shift is far below the square of any constant of use, so that the least eigenvalue is found soon, and
@@ -101,9 +108,9 @@ double least_eigenvalue(ShiftedInverse& inverse, NormProduct& norms) {
 
 }  // namespace
 
-double inf_sup_constant(const Problem& problem, const Mesh& mesh, Progress* progress, Bubbles bubbles) {
-  const InfSupForms forms = inf_sup_forms(problem, mesh, bubbles);
-  NormProduct norms(forms);
+double inf_sup_constant(const Problem& problem, const Mesh& mesh, Progress& progress, Bubbles bubbles) {
+  const InfSupForms forms = inf_sup_forms(problem, mesh, bubbles, progress);
+  NormProduct norms(forms, progress);
   ShiftedInverse inverse(forms, progress);
   return std::sqrt(std::max(0., least_eigenvalue(inverse, norms)));
 }

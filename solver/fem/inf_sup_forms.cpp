@@ -109,7 +109,7 @@ class Numbering {
 /// data can be read there alone.
 class FormBuilder {
  public:
-  FormBuilder(const Problem& problem, const Mesh& mesh, Bubbles bubbles)
+  FormBuilder(const Problem& problem, const Mesh& mesh, Bubbles bubbles, Progress& progress)
       : problem_(with_unit_material(problem)),
         mesh_(of_unit_area(mesh)),
         element_(problem_),
@@ -117,6 +117,7 @@ class FormBuilder {
         traces_(problem, mesh, clearance_),
         numbering_(element_.spaces(), mesh, traces_, bubbles) {
     for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
+      progress.check_in(t);
       add_triangle(t);
       add_extension(t);
     }
@@ -235,8 +236,8 @@ class FormBuilder {
 
 }  // namespace
 
-InfSupForms inf_sup_forms(const Problem& problem, const Mesh& mesh, Bubbles bubbles) {
-  return FormBuilder(problem, mesh, bubbles).take();
+InfSupForms inf_sup_forms(const Problem& problem, const Mesh& mesh, Bubbles bubbles, Progress& progress) {
+  return FormBuilder(problem, mesh, bubbles, progress).take();
 }
 
 }  // namespace signorini

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "problem/problem.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 
@@ -23,6 +24,7 @@ struct InfSupForms {
 };
 
 /// σ has the conforming spaces of the problem's scheme, with the conditions on Γ_F, rollers and Γ_C built in.
-InfSupForms inf_sup_forms(const Problem& problem, const Mesh& mesh, Bubbles bubbles);
+/// Throws what Progress throws.
+InfSupForms inf_sup_forms(const Problem& problem, const Mesh& mesh, Bubbles bubbles, Progress& progress);
 
 }  // namespace signorini

@@ -3,12 +3,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "fem/inf_sup.hpp"
 #include "fem/quadrature.hpp"
 #include "fem/raviart_thomas.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "progress/progress.hpp"
 #include "result/true_errors.hpp"
+#include "run/inf_sup_check.hpp"
 #include "solve.hpp"
 
 namespace signorini {
@@ -40,7 +40,9 @@ void require_finite(const TrueErrors& errors) {
           "the errors against the exact solution leave the range of double precision: look at `exact`");
 }
 
-StudyRow row_of(const Problem& problem, const Study& study, const Solution& solution, Observer& observer) {
+/// `settings` as they are now.
+StudyRow row_of(const Problem& problem, const Study& study, const Settings& settings,
+                const Solution& solution, Observer& observer) {
   const Summary& summary = solution.summary;
   StudyRow row;
   row.scheme = solution.scheme;
@@ -52,10 +54,7 @@ StudyRow row_of(const Problem& problem, const Study& study, const Solution& solu
   row.quantities = summary.quantities;
   row.errors = true_errors(problem, study.exact, solution, observer);
   require_finite(row.errors);
-  if (study.checks_inf_sup) {
-    Progress progress(observer, std::nullopt);
-    row.inf_sup = inf_sup_constant(problem, solution.mesh, &progress);
-  }
+  if (study.checks_inf_sup) row.inf_sup = inf_sup_in_time(problem, solution.mesh, settings, observer);
   row.iterations = summary.iterations;
   row.seconds = summary.timings.total;
   return row;
@@ -68,12 +67,17 @@ StudyRow failed_row(Scheme scheme, const StudyMesh& mesh, const std::string& why
   return row;
 }
 
+Settings after(double seconds, Settings settings) {
+  settings.spent += seconds;
+  return settings;
+}
+
 /// One solve of a study. Shows the observer of the whole its phases and levels, and makes a row of each
 /// level.
 class Run : public Observer {
  public:
-  Run(Problem problem, const Study& study, Observer& whole)
-      : problem_(std::move(problem)), study_(study), whole_(whole) {}
+  Run(Problem problem, const Study& study, const Settings& settings, Observer& whole)
+      : problem_(std::move(problem)), study_(study), settings_(settings), whole_(whole) {}
 
   void entered(Phase phase) override { whole_.entered(phase); }
   bool keep_going() override { return whole_.keep_going(); }
@@ -82,7 +86,7 @@ class Run : public Observer {
     whole_.refined(level, solution);
     if (solution.summary.outcome != Outcome::converged) return;
     const Stopwatch aside;
-    StudyRow row = row_of(problem_, study_, solution, whole_);
+    StudyRow row = row_of(problem_, study_, settings_now(), solution, whole_);
     row.level = level.number;
     row.seconds = level.seconds - aside_;
     rows_.push_back(std::move(row));
@@ -90,14 +94,14 @@ class Run : public Observer {
   }
 
   /// Adds its rows; the last one says so if the solve did not reach its end.
-  void add_to(std::vector<StudyRow>& rows, const StudyMesh& mesh, const Settings& settings) {
+  void add_to(std::vector<StudyRow>& rows, const StudyMesh& mesh) {
     std::string failure;
     try {
-      const Solution solution = solve(problem_, settings, *this);
+      const Solution solution = solve(problem_, settings_, *this);
       if (!whole_.keep_going()) throw Cancelled();
       failure = solution.summary.advice;
       if (failure.empty() && !problem_.mesh.adaptive)
-        rows_.push_back(row_of(problem_, study_, solution, whole_));
+        rows_.push_back(row_of(problem_, study_, settings_now(), solution, whole_));
     } catch (const SolveError& unsolvable) {
       failure = unsolvable.what();
     } catch (const InvalidProblem& only_here) {
@@ -108,17 +112,16 @@ class Run : public Observer {
   }
 
  private:
+  Settings settings_now() const { return after(watch_.seconds(), settings_); }
+
   const Problem problem_;
   const Study& study_;
+  const Settings& settings_;
   Observer& whole_;
+  const Stopwatch watch_;
   std::vector<StudyRow> rows_;
   double aside_ = 0;  ///< seconds that the true errors and the check took
 };
-
-Settings after(double seconds, Settings settings) {
-  settings.spent += seconds;
-  return settings;
-}
 
 /// A value of the number with the logarithms that a rate is made of.
 struct Measured {
@@ -132,20 +135,15 @@ std::optional<Measured> measured(const StudyRow& row, const RowNumber& number) {
 }
 
 /// The meshes whose inf-sup constants would take too much.
-std::vector<Fault> too_large_for_inf_sup(const Problem& problem, const Study& study,
-                                         const Settings& settings) {
+std::vector<Fault> meshes_too_large_for_inf_sup(const Problem& problem, const Study& study,
+                                                const Settings& settings) {
   std::vector<Fault> faults;
   const std::vector<Estimate> runs = estimate(problem, study, settings.factorization);
   for (std::size_t i = 0; i < study.meshes.size(); ++i) {
     std::int64_t most = 0;
     for (std::size_t run = i; run < runs.size(); run += study.meshes.size())
       most = std::max(most, runs[run].unknowns.stress);
-    if (most > most_for_inf_sup)
-      faults.push_back(
-          {study.meshes[i].name, "makes " + std::to_string(most) +
-                                     " stress unknowns, and the inf-sup constant is computed for " +
-                                     std::to_string(most_for_inf_sup) +
-                                     " at most: take fewer triangles, or leave study.check out"});
+    if (const auto fault = too_large_for_inf_sup(most)) faults.push_back({study.meshes[i].name, *fault});
   }
   return faults;
 }
@@ -166,7 +164,7 @@ std::vector<StudyRow> run_study(const Problem& problem, const Study& study, cons
                                   "the time limit for the whole study was reached before: raise "
                                   "solver.time_limit"));
       else
-        Run(run_of(problem, mesh, scheme), study, observer).add_to(rows, mesh, now);
+        Run(run_of(problem, mesh, scheme), study, now, observer).add_to(rows, mesh);
       observer.studied(++done, count);
     }
   return rows;
@@ -189,7 +187,7 @@ std::vector<Fault> validate(const Problem& problem, const Study& study, const Se
       faults.push_back({mesh.name, paper_form_needs_one_mesh});
   }
   if (!faults.empty()) return faults;
-  if (study.checks_inf_sup) faults = too_large_for_inf_sup(problem, study, settings);
+  if (study.checks_inf_sup) faults = meshes_too_large_for_inf_sup(problem, study, settings);
   if (!faults.empty()) return faults;
   const std::optional<Mesh> made = make_coarse_mesh(problem.domain);
   if (!made) return faults;

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ctime>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
@@ -18,8 +21,14 @@ namespace {
 
 constexpr std::array kSchemes{Scheme::conforming, Scheme::nonconforming};
 
+double constant(const Problem& problem, const Mesh& mesh, Bubbles bubbles = Bubbles::kept) {
+  Observer nobody;
+  Progress progress(nobody, std::nullopt);
+  return inf_sup_constant(problem, mesh, progress, bubbles);
+}
+
 double constant(const Problem& problem, Bubbles bubbles = Bubbles::kept) {
-  return inf_sup_constant(problem, make_domain_mesh(problem.domain, problem.mesh), nullptr, bubbles);
+  return constant(problem, make_domain_mesh(problem.domain, problem.mesh), bubbles);
 }
 
 /// A square, n times n squares, held above and with contact below.
@@ -107,8 +116,10 @@ TEST(InfSup, OfABarBetweenRollersTendsToTheValueInClosedForm) {
 TEST(InfSup, IsTheLeastEigenvalueOfTheDenseMatrices) {
   for (const Scheme scheme : kSchemes) {
     const Problem problem = square(scheme, 2, Pattern::crossed);
+    Observer nobody;
+    Progress progress(nobody, std::nullopt);
     const InfSupForms forms =
-        inf_sup_forms(problem, make_domain_mesh(problem.domain, problem.mesh), Bubbles::kept);
+        inf_sup_forms(problem, make_domain_mesh(problem.domain, problem.mesh), Bubbles::kept, progress);
     const int s = forms.stresses, n = forms.multipliers, w = forms.extensions;
     const Eigen::MatrixXd coupled = Eigen::MatrixXd(forms.coupled).selfadjointView<Eigen::Lower>();
     const Eigen::MatrixXd norms = Eigen::MatrixXd(forms.norms).selfadjointView<Eigen::Lower>();
@@ -140,9 +151,9 @@ TEST(InfSup, FallsOnMeshesThatTheStabilityCheckMendsAndNotOnTheMendedOnes) {
                               {{"left", {{3, 4}, {4, 0}}}, {"right", {{1, 2}}}, {"rest", {{0, 1}, {2, 3}}}}};
     problem.boundary = {{"left", Fixed{}}, {"right", Contact{}}};
     const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh), mended = stabilized(problem, mesh);
-    const double here = inf_sup_constant(problem, mesh);
+    const double here = constant(problem, mesh);
     EXPECT_LT(here, 0.6 * before) << shorter;
-    EXPECT_GT(inf_sup_constant(problem, mended), 0.12) << shorter;
+    EXPECT_GT(constant(problem, mended), 0.12) << shorter;
     before = here;
   }
 }
@@ -153,8 +164,8 @@ TEST(InfSup, OfAStripHeldByOneEdgeIsZeroUntilItIsMended) {
   problem.domain = Rectangle{{0, 0}, {4, 1}};
   problem.mesh.fineness = Divisions{4, 1};
   const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
-  EXPECT_LT(inf_sup_constant(problem, mesh), 1e-6);
-  EXPECT_GT(inf_sup_constant(problem, stabilized(problem, mesh)), 0.03);
+  EXPECT_LT(constant(problem, mesh), 1e-6);
+  EXPECT_GT(constant(problem, stabilized(problem, mesh)), 0.03);
 }
 
 TEST(InfSup, OfABodyThatContactAloneHoldsIsZero) {
@@ -200,14 +211,34 @@ TEST(InfSup, OfASingleTriangleIsFound) {
   }
 }
 
-TEST(InfSup, EndsWhereTheObserverEndsIt) {
-  struct Impatient : Observer {
-    bool keep_going() override { return false; }
-  } observer;
-  Progress progress(observer, {});
-  const Problem problem = square(Scheme::conforming, 4);
-  EXPECT_THROW(inf_sup_constant(problem, make_domain_mesh(problem.domain, problem.mesh), &progress),
-               Cancelled);
+/// It is asked every few milliseconds, whatever it does: no piece of it goes on for long.
+TEST(InfSup, EndsWhereverTheObserverEndsIt) {
+  struct Watch : Observer {
+    int left = 0, asked = 0;
+    std::clock_t before = std::clock(), longest = 0;
+    bool keep_going() override {
+      const std::clock_t now = std::clock();
+      longest = std::max(longest, now - before);
+      before = now;
+      ++asked;
+      return left-- > 0;
+    }
+  };
+  const Problem problem = square(Scheme::conforming, sanitized ? 8 : 48);
+  const Mesh mesh = make_domain_mesh(problem.domain, problem.mesh);
+  Watch all;
+  all.left = std::numeric_limits<int>::max();
+  Progress progress(all, {});
+  const std::clock_t begun = std::clock();
+  inf_sup_constant(problem, mesh, progress);
+  EXPECT_LT(all.longest, (std::clock() - begun) / 4);
+  for (const int share : {0, 10, 50, 90}) {
+    Watch impatient;
+    impatient.left = all.asked / 100 * share;
+    Progress interrupted(impatient, {});
+    EXPECT_THROW(inf_sup_constant(problem, mesh, interrupted), Cancelled);
+    EXPECT_EQ(impatient.asked, all.asked / 100 * share + 1);
+  }
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "norms.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/sanitized.hpp"
@@ -283,6 +286,23 @@ TEST(Study, HasTheInfSupConstantOfEachMeshIfItIsAskedFor) {
   const std::vector<StudyRow> levels = run(problem, study);
   EXPECT_GT(levels.size(), 1u);
   for (const StudyRow& row : levels) EXPECT_GT(row.inf_sup.value_or(0), 0.1) << row.error;
+}
+
+/// The time is up while the bound is computed, which is given a little more; the check is not.
+TEST(Study, HasNoMoreTimeForTheInfSupConstantThanThereIs) {
+  struct Slow : Observer {
+    void entered(Phase phase) override {
+      if (phase == Phase::certify) std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    }
+  } observer;
+  Study study{{Scheme::conforming}, squares({{16, 16}}), {}};
+  study.checks_inf_sup = true;
+  Settings settings = active_set;
+  settings.time_limit = 1;
+  const std::vector<StudyRow> rows = run_study(
+      problems::pressed_block(Scheme::conforming, Pattern::right, 0.3, 1), study, settings, observer);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_NE(rows[0].error.find("before the inf-sup constant was known"), std::string::npos) << rows[0].error;
 }
 
 TEST(Study, RefusesInfSupConstantsThatTakeTooMuch) {
