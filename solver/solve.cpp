@@ -1,7 +1,10 @@
 #include "solve.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 
+#include "progress/helpers.hpp"
 #include "progress/memory_meter.hpp"
 #include "run/adapt.hpp"
 #include "run/certified.hpp"
@@ -20,19 +23,80 @@ std::string in_words(const NotPositiveDefinite& failure) {
          "material and its units, and the sizes of the domain";
 }
 
-/// Adds an entry for each variation; `solve_one(variation, progress, show)` finds it.
-template <typename SolveOne>
-void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, Observer& observer,
-                const Progress& whole, Solution& solution, const SolveOne& solve_one) {
-  SilentObserver within(observer);
-  ShowSolution show;
-  if (observer.sees_entries())
-    show = [&](const Solution& own) { observer.entry(solution.sweep.size(), own); };
-  for (const Variation& variation : sweep) {
-    Progress progress(within, settings.time_limit, settings.spent + whole.seconds());
+/// Solves variations by the paper's iteration, each by itself.
+class PaperSweep {
+ public:
+  PaperSweep(const Problem& problem, const Settings& settings)
+      : problem_(problem), settings_(settings), varied_(problem) {}
+
+  SweepEntry solve(const Variation& variation, Progress& progress, const ShowSolution& show) {
+    apply(variation, problem_, varied_);
+    if (!show) return entry_of(iterate_paper_form(varied_, settings_, progress));
+    Solution shown = solve_paper_form(varied_, settings_, progress);
+    show(shown);
+    return entry_of(std::move(shown));
+  }
+
+  void begin_anew() {}
+
+  static std::vector<std::size_t> starts(const std::vector<Variation>& sweep, std::size_t first, Progress&) {
+    std::vector<std::size_t> all(sweep.size() - first);
+    std::iota(all.begin(), all.end(), first);
+    return all;
+  }
+
+ private:
+  const Problem& problem_;
+  const Settings& settings_;
+  Problem varied_;
+};
+
+/// Adds an entry for each variation to the solution.
+template <typename Entries>
+class SweepOver {
+ public:
+  SweepOver(Entries entries, const std::vector<Variation>& sweep, const Settings& settings,
+            Observer& observer, Progress& whole)
+      : entries_(std::move(entries)),
+        sweep_(sweep),
+        settings_(settings),
+        observer_(observer),
+        within_(observer),
+        whole_(whole) {}
+
+  void solve(Solution& solution) {
+    for (std::size_t i = 0; i < sweep_.size(); ++i) {
+      const auto starts = [&] { return entries_.starts(sweep_, i, whole_); };
+      if (settings_.helpers != nullptr && settings_.helpers->join(i, starts) == i) {
+        std::ranges::move(settings_.helpers->solve(i, here()), std::back_inserter(solution.sweep));
+        return;
+      }
+      solution.sweep.push_back(entry(i));
+      observer_.swept(i + 1, sweep_.size());
+    }
+  }
+
+ private:
+  SolveEntries here() {
+    return [this](std::size_t first, std::size_t count, const auto& told) {
+      entries_.begin_anew();
+      std::vector<SweepEntry> found;
+      while (found.size() < count) {
+        found.push_back(entry(first + found.size()));
+        told(found.size());
+      }
+      return found;
+    };
+  }
+
+  SweepEntry entry(std::size_t number) {
+    const Variation& variation = sweep_[number];
+    Progress progress(within_, settings_.time_limit, settings_.spent + whole_.seconds());
+    ShowSolution show;
+    if (observer_.sees_entries()) show = [&](const Solution& own) { observer_.entry(number, own); };
     SweepEntry entry;
     try {
-      entry = solve_one(variation, progress, show);
+      entry = entries_.solve(variation, progress, show);
     } catch (const SolveError& failure) {
       entry.error = failure.what();
     } catch (const NotPositiveDefinite& failure) {
@@ -42,10 +106,16 @@ void sweep_over(const std::vector<Variation>& sweep, const Settings& settings, O
     }
     entry.title = variation.title;
     entry.seconds = progress.seconds();
-    solution.sweep.push_back(std::move(entry));
-    observer.swept(solution.sweep.size(), sweep.size());
+    return entry;
   }
-}
+
+  Entries entries_;
+  const std::vector<Variation>& sweep_;
+  const Settings& settings_;
+  Observer& observer_;
+  SilentObserver within_;
+  Progress& whole_;
+};
 
 Solution solve_condensed(const Problem& problem, const std::vector<Variation>& sweep,
                          const Settings& settings, Observer& observer, OperatorCache* cache,
@@ -54,24 +124,24 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   auto used = cache ? cache->find(problem.operator_key) : nullptr;
   const bool keeps = cache && !used;
   Solution solution;
+  std::shared_ptr<const Mesh> mesh;
+  std::unique_ptr<const Discretization> discretization;
   {
-    std::shared_ptr<const Mesh> mesh;
     if (!used) mesh = requested_mesh(problem, progress);
     require_sound_data(problem, used ? used->mesh() : *mesh, progress);
     CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
                                       : CondensedProblem(problem, mesh, settings.factorization, progress);
     used = condensed.used_operator();
     if (keeps) cache->keep(problem.operator_key, used);
-    solution = condensed.solve(settings, progress);
+    if (!settings.entries_alone) solution = condensed.solve(settings, progress);
+    mesh = used->shared_mesh();
+    discretization = condensed.take_discretization();
   }
   if (sweep.empty()) used.reset();  // unless the cache has it, too
-  add_certified(problem, settings, progress, solution);
-  if (sweep.empty()) return solution;
-  Sweep entries(problem, std::move(used), settings);
-  sweep_over(sweep, settings, observer, progress, solution,
-             [&](const Variation& variation, Progress& own, const ShowSolution& show) {
-               return entries.solve(variation, own, show);
-             });
+  if (!settings.entries_alone) add_certified(problem, settings, progress, solution, discretization.get());
+  discretization.reset();
+  if (!sweep.empty())
+    SweepOver(Sweep(problem, std::move(used), settings), sweep, settings, observer, progress).solve(solution);
   return solution;
 }
 
@@ -85,17 +155,12 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
   }
   if (!std::holds_alternative<PaperUzawa>(settings.method))
     return solve_condensed(problem, sweep, settings, observer, cache, progress);
-  Solution solution = solve_paper_form(problem, settings, progress);
-  add_certified(problem, settings, progress, solution);
-  Problem varied = problem;
-  sweep_over(sweep, settings, observer, progress, solution,
-             [&](const Variation& variation, Progress& own, const ShowSolution& show) {
-               apply(variation, problem, varied);
-               if (!show) return entry_of(iterate_paper_form(varied, settings, own));
-               Solution shown = solve_paper_form(varied, settings, own);
-               show(shown);
-               return entry_of(std::move(shown));
-             });
+  Solution solution;
+  if (!settings.entries_alone) {
+    solution = solve_paper_form(problem, settings, progress);
+    add_certified(problem, settings, progress, solution);
+  }
+  SweepOver(PaperSweep(problem, settings), sweep, settings, observer, progress).solve(solution);
   return solution;
 }
 

@@ -6,7 +6,7 @@
 #include <Spectra/SymEigsSolver.h>
 
 #include "contact/multilevel_scaling.hpp"
-#include "system/pace.hpp"
+#include "progress/pace.hpp"
 
 namespace signorini {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "system/pace.hpp"
+#include "progress/pace.hpp"
 
 namespace signorini {
 namespace {

@@ -5,6 +5,8 @@
 
 namespace signorini {
 
+class Helpers;
+
 /// The paper's Uzawa iteration (section 5) with numbers for its parameters.
 struct PaperUzawa {
   double rho = 0;                   ///< step ρ of both multipliers, length² / modulus and length / modulus
@@ -37,6 +39,9 @@ struct Settings {
   std::optional<double> time_limit;  ///< seconds for the whole solve
   double spent = 0;  ///< seconds that count for the limit, but were before the solve: reading the problem
   Factorization factorization = Factorization::multifrontal;  ///< of whoever solves, not of the problem
+  bool entries_alone =
+      false;  ///< only the entries of the sweep are asked for, not the problem's own solution
+  Helpers* helpers = nullptr;  ///< with the sweep, if there are any
 };
 
 }  // namespace signorini

@@ -1,6 +1,9 @@
 #include "progress.hpp"
 
+#include <cmath>
 #include <string>
+
+#include "progress/overflow.hpp"
 
 namespace signorini {
 
@@ -35,6 +38,10 @@ std::optional<double> Progress::time_left() const {
 bool Progress::record(Iteration iteration) {
   iteration.number = taken_ + iterations() + 1;
   iteration.seconds = seconds();
+  for (const double residual :
+       {iteration.displacement_change.value_or(0), iteration.clearance_change, iteration.equilibrium,
+        iteration.penetration, iteration.tension, iteration.complementarity})
+    if (!std::isfinite(residual)) throw Overflow();
   history_.push_back(iteration);
   observer_.iterated(iteration);
   if (!observer_.keep_going()) throw Cancelled();

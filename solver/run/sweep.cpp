@@ -95,6 +95,8 @@ class Sweep::Reference {
   }
 
   const SweepEntry& entry() const { return entry_; }
+  const ClearanceSpace& space() const { return condensed_.discretization().clearance; }
+  const std::string& load_key() const { return problem_.load_key; }
   const std::shared_ptr<const Operator>& used_operator() const { return condensed_.used_operator(); }
 
   /// The solution for the problem's gaps, if these two differ in the gaps alone and the change is a function
@@ -116,8 +118,6 @@ class Sweep::Reference {
   }
 
  private:
-  const ClearanceSpace& space() const { return condensed_.discretization().clearance; }
-
   void observe(const Eigen::MatrixXd& stress, Progress& progress) {
     const Discretization& discretization = condensed_.discretization();
     Factor::Workspace workspace;
@@ -206,12 +206,52 @@ Sweep::Sweep(const Problem& problem, std::shared_ptr<const Operator> kept, const
       mesh_(kept->shared_mesh()),
       operator_(std::move(kept)) {}
 
+Sweep::Sweep(Sweep&&) noexcept = default;
 Sweep::~Sweep() = default;
 
 /// Whether the operator is that of the variation. That of a material without a key is not kept.
 bool Sweep::is_at_hand(const Variation& variation) const {
   return operator_ && material_key_ == (variation.material ? variation.material_key : "") &&
          !(variation.material && variation.material_key.empty());
+}
+
+void Sweep::begin_anew() {
+  reference_.reset();
+}
+
+std::vector<std::size_t> Sweep::starts(const std::vector<Variation>& sweep, std::size_t first,
+                                       Progress& progress) const {
+  // Of the variation that the next one would refer to.
+  std::optional<ClearanceSpace> space;
+  std::string load_key, material_key = material_key_;
+  if (reference_) {
+    space = reference_->space();
+    load_key = reference_->load_key();
+  }
+  const int order = spaces_of(problem_.scheme, components(problem_.material)).order;
+  Problem varied = problem_;
+  std::vector<std::size_t> starts;
+  for (std::size_t i = first; i < sweep.size(); ++i) {
+    progress.check();
+    const Variation& variation = sweep[i];
+    apply(variation, problem_, varied);
+    const std::string own_key = variation.material ? variation.material_key : std::string();
+    const bool is_other = !space || !problem_.quantities.empty() || varied.load_key.empty() ||
+                          varied.load_key != load_key || own_key != material_key ||
+                          (variation.material && own_key.empty());
+    try {
+      ClearanceSpace after = make_clearance_space(varied, *mesh_);
+      if (!is_other && growth(*space, after, order)) continue;
+      space = std::move(after);
+    } catch (const InvalidProblem&) {
+      if (!is_other) continue;  // it has no solution, and the next one refers to that before it
+      space.reset();
+    }
+    load_key = varied.load_key;
+    material_key = own_key;
+    starts.push_back(i);
+  }
+  return starts;
 }
 
 SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const ShowSolution& show) {

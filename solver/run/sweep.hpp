@@ -25,10 +25,19 @@ class Sweep {
  public:
   /// Of the problem whose operator was kept. Problem and settings must outlive the sweep.
   Sweep(const Problem& problem, std::shared_ptr<const Operator> kept, const Settings& settings);
+  Sweep(Sweep&&) noexcept;
   ~Sweep();
 
   /// Throws Cancelled, SolveError and InvalidProblem.
   SweepEntry solve(const Variation& variation, Progress& progress, const ShowSolution& show);
+
+  /// The next variation owes nothing to those before it.
+  void begin_anew();
+
+  /// Which of the variations from `first` on would owe nothing to those before them anyway, if one is solved
+  /// after the other. Throws Cancelled.
+  std::vector<std::size_t> starts(const std::vector<Variation>& sweep, std::size_t first,
+                                  Progress& progress) const;
 
  private:
   class Reference;

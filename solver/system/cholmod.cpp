@@ -7,8 +7,8 @@
 
 #include <cholmod.h>
 
+#include "progress/pace.hpp"
 #include "system/dissection.hpp"
-#include "system/pace.hpp"
 #include "system/symmetric_update.hpp"
 
 extern "C" void omp_set_max_active_levels(int levels);

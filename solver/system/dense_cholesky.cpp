@@ -7,9 +7,9 @@
 
 #include <cblas.h>
 
+#include "progress/pace.hpp"
 #include "system/elimination_in_blocks.hpp"
 #include "system/factor.hpp"
-#include "system/pace.hpp"
 
 namespace signorini {
 namespace {

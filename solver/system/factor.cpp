@@ -5,7 +5,7 @@
 
 #include <cblas.h>
 
-#include "system/pace.hpp"
+#include "progress/pace.hpp"
 
 namespace signorini {
 

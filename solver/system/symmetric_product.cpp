@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "system/pace.hpp"
+#include "progress/pace.hpp"
 
 namespace signorini {
 

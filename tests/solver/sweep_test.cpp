@@ -6,6 +6,7 @@
 
 #include "problems/families.hpp"
 #include "problems/sanitized.hpp"
+#include "progress/helpers.hpp"
 
 namespace signorini::sweep_test {
 namespace {
@@ -345,6 +346,89 @@ class StopsAfter : public Observer {
  private:
   std::size_t entries_, done_ = 0;
 };
+
+/// Solves the pieces between starts by itself, the last one first.
+class Backwards : public Helpers {
+ public:
+  Backwards(std::size_t alone, std::size_t entries) : alone_(alone), entries_(entries) {}
+
+  std::size_t join(std::size_t next, const FindStarts& starts) override {
+    if (next == alone_) starts_ = starts();
+    return starts_.empty() ? none : starts_.front();
+  }
+  std::vector<SweepEntry> solve(std::size_t first, const SolveEntries& here) override {
+    std::vector<SweepEntry> all(entries_ - first);
+    for (std::size_t i = starts_.size(); i-- > 0;) {
+      const std::size_t end = i + 1 < starts_.size() ? starts_[i + 1] : entries_;
+      std::ranges::move(here(starts_[i], end - starts_[i], [](std::size_t) {}),
+                        all.begin() + static_cast<std::ptrdiff_t>(starts_[i] - first));
+    }
+    return all;
+  }
+  const std::vector<std::size_t>& starts() const { return starts_; }
+
+ private:
+  const std::size_t alone_, entries_;
+  std::vector<std::size_t> starts_;
+};
+
+/// To the last bit.
+void expect_same(const SweepEntry& found, const SweepEntry& expected) {
+  EXPECT_EQ(found.error, expected.error);
+  EXPECT_EQ(found.energy, expected.energy);
+  EXPECT_EQ(found.penetration, expected.penetration);
+  EXPECT_EQ(found.complementarity, expected.complementarity);
+  EXPECT_EQ(found.iterations, expected.iterations);
+  ASSERT_EQ(found.contact.size(), expected.contact.size());
+  for (std::size_t i = 0; i < found.contact.size(); ++i)
+    EXPECT_EQ(found.contact[i].pressure, expected.contact[i].pressure);
+  ASSERT_EQ(found.parts.size(), expected.parts.size());
+  for (std::size_t i = 0; i < found.parts.size(); ++i)
+    EXPECT_EQ(found.parts[i].force, expected.parts[i].force);
+}
+
+TEST(Sweep, HelpersFindWhatOneFindsAlone) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
+    Problem problem = problems::paper(scheme, 6);
+    problem.load_key = "own";
+    std::vector<Variation> sweep;
+    for (int i = 0; i < 24; ++i) {
+      Problem other = problem;
+      // Three of each shape, of which two follow each other, and a material in between.
+      const double height = 0.01 * i, bend = i / 2 % 3;
+      std::get<Contact>(other.boundary["bottom"]).gap =
+          problems::function([=](const Point& x) { return height + bend * x.x() * x.x(); });
+      if (i >= 18) other.body = VectorField(-3 - i / 21);
+      sweep.push_back(data_of(other, i < 18 ? "own" : "other " + std::to_string(i / 21)));
+      if (i == 8 || i == 9) {
+        sweep.back().material = MembraneStiffness::isotropic(2);
+        sweep.back().material_key = "2";
+      }
+    }
+    for (const Method& method : {Method(ActiveSet{}), Method(PaperUzawa{0.1, 1})})
+      for (const std::size_t alone : {1, 4, 20}) {
+        Settings settings{method, {}};
+        const Solution expected = solve_sweep(problem, sweep, settings);
+        Backwards backwards(alone, sweep.size());
+        settings.helpers = &backwards;
+        const Solution found = solve_sweep(problem, sweep, settings);
+        EXPECT_FALSE(backwards.starts().empty());
+        if (scheme == Scheme::nonconforming && alone == 1 && std::holds_alternative<ActiveSet>(method)) {
+          EXPECT_EQ(backwards.starts(), (std::vector<std::size_t>{8, 10, 18, 21}));
+        }
+        ASSERT_EQ(found.sweep.size(), sweep.size());
+        for (std::size_t i = 0; i < sweep.size(); ++i) expect_same(found.sweep[i], expected.sweep[i]);
+        // As a worker solves it who has nothing else of it.
+        const std::size_t last = backwards.starts().back();
+        settings = {method, {}};
+        settings.entries_alone = true;
+        const std::vector<Variation> rest(sweep.begin() + static_cast<std::ptrdiff_t>(last), sweep.end());
+        const Solution piece = solve_sweep(problem, rest, settings);
+        EXPECT_TRUE(piece.contact.empty());
+        for (std::size_t i = 0; i < rest.size(); ++i) expect_same(piece.sweep[i], expected.sweep[last + i]);
+      }
+  }
+}
 
 TEST(Sweep, CanBeCancelledBetweenEntries) {
   const Problem problem = problems::paper(Scheme::nonconforming, 6);
