@@ -73,7 +73,8 @@ class MembraneSums {
   static const Rule& rule_of_degree(int order);
   const Rule& rule_for(int degree) const;
   std::optional<QuadraticBalance::Data> balance_on(int t) const;
-  void integrate(int t, const Rule& rule, double error, LawField<1>& law, TriangleSums& sums) const;
+  void integrate(int t, const Rule& rule, const std::optional<QuadraticBalance::Data>& balance, double error,
+                 LawField<1>& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
   std::vector<Term> terms_;

@@ -1,15 +1,21 @@
 #include "fem/discretization.hpp"
 
+#include <utility>
+
 #include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 
 namespace signorini {
 
 Discretization::Discretization(const Problem& posed, const Mesh& given, Progress* progress)
+    : Discretization(posed, given, LoadProjection(posed, given, progress), progress) {}
+
+Discretization::Discretization(const Problem& posed, const Mesh& given, LoadProjection projected,
+                               Progress* progress)
     : problem(posed),
       mesh(given),
       element(posed),
-      body(posed, mesh, progress),
+      body(std::move(projected)),
       traction(posed, mesh, progress),
       load(spaces().displacements(), triangles()),
       clearance(make_clearance_space(posed, mesh)),

@@ -60,6 +60,23 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   }
 }
 
+LoadProjection LoadProjection::plus(double z, const LoadProjection& other) const {
+  LoadProjection sum = other.varies() && !varies() ? other : *this;
+  for (std::size_t t = 0; t < sum.all_.size(); ++t) {
+    const ProjectedLoad &own = (*this)[static_cast<int>(t)], &more = other[static_cast<int>(t)];
+    const double size = std::abs(z);
+    sum.all_[t] = {own.projection + z * more.projection,
+                   own.balanced + z * more.balanced,
+                   own.rest + size * more.rest,
+                   own.unbalanced + size * more.unbalanced,
+                   own.uncertain_force + size * more.uncertain_force,
+                   own.uncertain_work + size * more.uncertain_work,
+                   own.jumps || more.jumps};
+  }
+  sum.unmet_ = unmet_.empty() ? other.unmet_ : unmet_;
+  return sum;
+}
+
 bool LoadProjection::project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
                                 CellBudget& budget, ProjectedLoad& load) {
   const double twice_area = AffineMap(corners).determinant;

@@ -31,6 +31,9 @@ class LoadProjection {
   /// `progress` may be null; else throws what it throws.
   LoadProjection(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
 
+  /// Of f + z q, with the projection of q on the same mesh. What both may be off by adds up.
+  LoadProjection plus(double z, const LoadProjection& other) const;
+
   const ProjectedLoad& operator[](int t) const { return all_[all_.size() == 1 ? 0 : t]; }
   /// f is not the same all over some triangle.
   bool varies() const { return all_.size() > 1; }

@@ -89,8 +89,7 @@ std::array<double, 2> shares_within(const Segment& edge, const Point& centre, do
 /// those that grow.
 double edges_around(const LocalSize& local, const Segment& edge, double size) {
   const double length = (edge[1] - edge[0]).norm(), reach = local.radius + local.size;
-  if (local.size >= std::min(size, length) || !is_within(local.at, wider(box_around(edge, 0), reach)))
-    return 0;
+  if (local.size >= std::min(size, length)) return 0;
   const auto [begin, end] = shares_within(edge, local.at, reach);
   if (end <= begin) return 0;
   const double growing = std::log2(std::min(size, length) / local.size);
@@ -186,8 +185,13 @@ class PredictedSizes::OfPolygon {
         across += kTrianglesAcross * pieces;
       }
     triangles += across + by_area(std::max(0., area_ - along_it), size);
-    for (int e = 0; e < static_cast<int>(rings_.points.size()) && !request.sizes.empty(); ++e)
-      for (const LocalSize& local : request.sizes) add(e, edges_around(local, rings_.edge(e), size));
+    for (int e = 0; e < static_cast<int>(rings_.points.size()) && !request.sizes.empty(); ++e) {
+      const Segment edge = rings_.edge(e);
+      const Box box = box_around(edge, 0);
+      for (const LocalSize& local : request.sizes)
+        if (is_within(local.at, wider(box, local.radius + local.size)))
+          add(e, edges_around(local, edge, size));
+    }
     const bool are_many = request.sizes.size() * rings_.points.size() > kMostLookedAt;
     for (const LocalSize& local : request.sizes) triangles += around(local, size, are_many);
     for (const Cluster& cluster : clusters_)

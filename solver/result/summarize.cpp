@@ -16,6 +16,7 @@
 #include "fem/reconstruct.hpp"
 #include "flux_functional.hpp"
 #include "outcome.hpp"
+#include "progress/overflow.hpp"
 #include "strain_notes.hpp"
 
 namespace signorini {
@@ -187,10 +188,7 @@ std::vector<std::string> warnings(const Problem& problem, const Solution& soluti
 void refuse_overflow(const Solution& solution) {
   const bool finite = std::isfinite(solution.summary.energy) && solution.stress.allFinite() &&
                       solution.displacement.allFinite() && std::isfinite(solution.summary.contact.force);
-  if (!finite)
-    throw SolveError(
-        "the numbers of this problem leave the range of double precision: choose units in which loads, "
-        "moduli, lengths, rho and augmentation lie closer to 1");
+  if (!finite) throw Overflow();
 }
 
 }  // namespace

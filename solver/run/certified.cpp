@@ -10,10 +10,9 @@ constexpr std::size_t kSupports = 16;
 /// What the energies of extensions may be too large by, where the stiffness varies.
 constexpr double kOfEnergy = 1e-3;
 
-void add_supports(const Problem& problem, const Settings& settings, Progress& progress,
+void add_supports(const Discretization& discrete, const Settings& settings, Progress& progress,
                   const Solution& solution, Certified& certified) {
-  const Discretization discrete(problem, solution.mesh, &progress);
-  const LawOnMesh laws(problem.material, solution.mesh, kOfEnergy, progress);
+  const LawOnMesh laws(discrete.problem.material, discrete.mesh, kOfEnergy, progress);
   const Extensions extensions(discrete, laws, settings.factorization, progress);
   if (extensions.supports().size() > kSupports) {
     certified.unmet.push_back("what supports take is bounded for up to " + std::to_string(kSupports) +
@@ -25,7 +24,8 @@ void add_supports(const Problem& problem, const Settings& settings, Progress& pr
 
 }  // namespace
 
-void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution) {
+void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution,
+                   const Discretization* at_hand) {
   Summary& summary = solution.summary;
   const std::optional<ErrorBound>& bound = summary.error_bound;
   if (!bound || !bound->guaranteed || summary.outcome == Outcome::cancelled) return;
@@ -35,7 +35,11 @@ void add_certified(const Problem& problem, const Settings& settings, Progress& p
   certified.work = bound->work;
   try {
     progress.enter(Phase::certify);
-    add_supports(problem, settings, progress, solution, certified);
+    if (at_hand != nullptr)
+      add_supports(*at_hand, settings, progress, solution, certified);
+    else
+      add_supports(Discretization(problem, solution.mesh, &progress), settings, progress, solution,
+                   certified);
   } catch (const TimeUp&) {
     certified.unmet.push_back(
         "the time limit was reached before it was known what supports take: raise solver.time_limit");

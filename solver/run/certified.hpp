@@ -1,12 +1,15 @@
 #pragma once
 
+#include "fem/discretization.hpp"
 #include "problem/settings.hpp"
 #include "progress/progress.hpp"
 #include "result/solution.hpp"
 
 namespace signorini {
 
-/// Adds Summary::certified to a solution with a guaranteed bound, in the phase certify. Throws Cancelled.
-void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution);
+/// Adds Summary::certified to a solution with a guaranteed bound, in the phase certify. Throws Cancelled. A
+/// discretization that is at hand, on the solution's mesh, is not made again.
+void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution,
+                   const Discretization* at_hand = nullptr);
 
 }  // namespace signorini

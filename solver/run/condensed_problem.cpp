@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "certify/certificate.hpp"
 #include "contact/complete.hpp"
@@ -64,10 +65,12 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept,
-                                   Progress& progress)
+                                   Progress& progress, std::optional<LoadProjection> body)
     : operator_(std::move(kept)), reused_(true) {
   progress.enter(Phase::assemble);
-  discretization_ = std::make_unique<Discretization>(problem, operator_->mesh(), &progress);
+  const Mesh& mesh = operator_->mesh();
+  if (!body) body.emplace(problem, mesh, &progress);
+  discretization_ = std::make_unique<Discretization>(problem, mesh, std::move(*body), &progress);
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
   condense(progress);
 }

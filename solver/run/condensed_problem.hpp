@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
@@ -26,9 +27,13 @@ class CondensedProblem {
   /// Cancelled, SolveError and what factorize() throws. The problem must outlive it.
   CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Factorization by,
                    Progress& progress);
-  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
+  /// `body`: its load, if that is projected already.
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress,
+                   std::optional<LoadProjection> body = std::nullopt);
 
   const Discretization& discretization() const { return *discretization_; }
+  /// It refers to the problem and to the mesh of the operator. Nothing else of this may be used any more.
+  std::unique_ptr<Discretization> take_discretization() { return std::move(discretization_); }
   const std::shared_ptr<const Operator>& used_operator() const { return operator_; }
   const ContactComplement& contact() const { return condensed_->contact(); }
 

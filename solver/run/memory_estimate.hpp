@@ -33,7 +33,7 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
 double memory_of_solution(const Spaces& spaces, double triangles);
 
 /// What enclosing quantities takes besides: two neighbours at a time with their pairs, and that of the base.
-double memory_of_neighbours(const Spaces& spaces, double triangles);
+double memory_of_neighbours(const Problem& problem, const Spaces& spaces, double triangles);
 
 /// What the solution keeps of the levels of a mesh that refines itself, each of which has half as many
 /// triangles again as the one before.

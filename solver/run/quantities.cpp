@@ -5,12 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include "certify/energy_norm.hpp"
 #include "certify/quantities/quantity_enclosure.hpp"
 #include "certify/quantities/reflection.hpp"
 #include "contact/residuals.hpp"
 #include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
+#include "fem/per_shape.hpp"
 #include "fem/quadrature.hpp"
 #include "run/openings.hpp"
 
@@ -59,7 +59,8 @@ double largest_of(const Field& field, const Mesh& mesh, const std::vector<int>& 
 }
 
 /// About what the stress changes by per z, in the norm of C: in two dimensions the energy of a body whose
-/// boundary moves by w is E w², that of one on which the force F acts is F² / E, whatever its size.
+/// boundary moves by w is E w², that of one on which the force F acts is F² / E, whatever its size, and less
+/// where the force is spread out. A guess beyond kLeastStep and kMostStep costs a solve.
 double guessed_response(const Quantity& quantity, const Mesh& mesh, const Material& material) {
   const double root = std::sqrt(compliance_at(material, mesh.centroid(0)).diagonal().maxCoeff()),
                length = mesh.diameter();
@@ -75,7 +76,8 @@ double guessed_response(const Quantity& quantity, const Mesh& mesh, const Materi
   for (const Field& field : quantity.density.fields())
     for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
       force += std::abs(field(mesh.centroid(t))) * AffineMap(mesh.corners(t)).determinant / 2;
-  return moved / root + force * root;
+  constexpr double of_force = 0.4;
+  return moved / root + of_force * force * root;
 }
 
 double length_of_parts(const Quantity& quantity, const Mesh& mesh) {
@@ -86,13 +88,66 @@ double length_of_parts(const Quantity& quantity, const Mesh& mesh) {
   return length;
 }
 
+/// ‖·‖_C of a discrete stress, by the rule of the scheme.
+double norm_of(const Eigen::MatrixXd& stress, const Discretization& discrete) {
+  PerShape<LocalMatrix> compliances(discrete);
+  double sum = 0;
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    const LocalMatrix& compliance =
+        compliances(t, [](const ElementMatrices& matrices) { return matrices.compliance; });
+    const LocalVector own = stress.col(t);
+    sum += own.dot(compliance.lazyProduct(own));
+  }
+  return std::sqrt(sum);
+}
+
+/// The problem with the loads of a quantity alone.
+Problem loaded_by(const Quantity& quantity, Problem problem) {
+  problem.body = {};
+  for (auto& [part, condition] : problem.boundary)
+    if (std::holds_alternative<Traction>(condition) || std::holds_alternative<Pressure>(condition))
+      condition = Traction{};
+  Quantity loads;
+  loads.density = quantity.density;
+  loads.densities = quantity.densities;
+  return neighbour(problem, loads, 1);
+}
+
+/// A quantity, which must outlive it, with its density projected onto the mesh of a problem.
+class QuantityOnMesh {
+ public:
+  QuantityOnMesh(const Quantity& quantity, const Discretization& discrete, Progress& progress)
+      : quantity_(quantity), density_(loaded_by(quantity, discrete.problem), discrete.mesh, &progress) {}
+
+  const Quantity& quantity() const { return quantity_; }
+
+  /// f + z q.
+  LoadProjection beside(const LoadProjection& body, double z) const { return body.plus(z, density_); }
+
+  /// (q, u_h) + <r, u_h>.
+  double work(const Discretization& discrete, const Fields& fields, Progress& progress) const {
+    if (quantity_.has_no_loads()) return 0;
+    const Problem problem = loaded_by(quantity_, discrete.problem);
+    const Discretization loaded(problem, discrete.mesh, density_, &progress);
+    const Eigen::Index free = discrete.traces.free_unknowns();
+    return loaded.load.cwiseProduct(fields.displacement).sum() +
+           loaded.coupling_load.head(free).dot(fields.coupling.head(free));
+  }
+
+ private:
+  const Quantity& quantity_;
+  const LoadProjection density_;
+};
+
 /// A neighbouring problem and its solution, which refer to each other.
 class Neighbour {
  public:
   Neighbour(const Neighbour&) = delete;
-  Neighbour(const Problem& problem, const Quantity& quantity, double z, const CondensedProblem& condensed,
+  Neighbour(const Problem& problem, const QuantityOnMesh& asked, double z, const CondensedProblem& condensed,
             const Fields& fields, const Settings& settings, Progress& progress)
-      : problem_(neighbour(problem, quantity, z)), condensed_(problem_, condensed.used_operator(), progress) {
+      : problem_(neighbour(problem, asked.quantity(), z)),
+        condensed_(problem_, condensed.used_operator(), progress,
+                   asked.beside(condensed.discretization().body, z)) {
     fields_ = condensed_.find(settings.method, progress, fields.clearance);
   }
 
@@ -118,29 +173,6 @@ class Neighbour {
   Solution solution_;
 };
 
-/// The problem with the loads of a quantity alone.
-Problem loaded_by(const Quantity& quantity, Problem problem) {
-  problem.body = {};
-  for (auto& [part, condition] : problem.boundary)
-    if (std::holds_alternative<Traction>(condition) || std::holds_alternative<Pressure>(condition))
-      condition = Traction{};
-  Quantity loads;
-  loads.density = quantity.density;
-  loads.densities = quantity.densities;
-  return neighbour(problem, loads, 1);
-}
-
-/// (q, u_h) + <r, u_h>.
-double work_of_densities(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
-                         Progress& progress) {
-  if (quantity.has_no_loads()) return 0;
-  const Problem problem = loaded_by(quantity, discrete.problem);
-  const Discretization loaded(problem, discrete.mesh, &progress);
-  const Eigen::Index free = discrete.traces.free_unknowns();
-  return loaded.load.cwiseProduct(fields.displacement).sum() +
-         loaded.coupling_load.head(free).dot(fields.coupling.head(free));
-}
-
 /// The mean of a weight over each edge (P0), or its value at each node (P1), an entry a row.
 Eigen::VectorXd on_rows(const std::map<std::string, Field>& weights, const Discretization& discrete) {
   const Mesh& mesh = discrete.mesh;
@@ -161,13 +193,13 @@ Eigen::VectorXd on_rows(const std::map<std::string, Field>& weights, const Discr
 }
 
 /// Q of the discrete solution.
-double value_of(const Quantity& quantity, const Discretization& discrete, const Fields& fields,
+double value_of(const QuantityOnMesh& asked, const Discretization& discrete, const Fields& fields,
                 const Solution& solution, Progress& progress) {
+  const Quantity& quantity = asked.quantity();
   Eigen::VectorXd forces;
   contact_forces(
       discrete, [&](int t) -> LocalVector { return solution.stress.col(t); }, forces);
-  double sum = work_of_densities(quantity, discrete, fields, progress) +
-               on_rows(quantity.weights, discrete).dot(forces);
+  double sum = asked.work(discrete, fields, progress) + on_rows(quantity.weights, discrete).dot(forces);
   for (const Reaction& reaction : solution.summary.parts)
     if (const auto found = quantity.motions.find(reaction.part); found != quantity.motions.end()) {
       for (std::size_t c = 0; c < reaction.force.size(); ++c)
@@ -197,7 +229,7 @@ class Encloser {
               kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
         base_(discrete(), solution, std::move(*certificate.pair), laws_, progress),
         enclosure_(base_, laws_, progress),
-        size_(std::sqrt(energy_norm_squares(discrete(), solution.stress, laws_, progress).sum())) {}
+        size_(norm_of(solution.stress, discrete())) {}
 
   EnclosedQuantity operator()(const Quantity& quantity) {
     EnclosedQuantity own;
@@ -230,12 +262,13 @@ class Encloser {
   }
 
   void enclose_by_neighbours(const Quantity& quantity, EnclosedQuantity& own) {
-    own.value = own.estimate = value_of(quantity, discrete(), fields_, solution_, progress_);
+    const QuantityOnMesh asked(quantity, discrete(), progress_);
+    own.value = own.estimate = value_of(asked, discrete(), fields_, solution_, progress_);
     double shorter = 1;
     for (int tries = 0; tries < kTries; ++tries, shorter *= kShorter) {
       own.unmet = base_.unmet;
       try {
-        enclose(quantity, shorter, own);
+        enclose(asked, shorter, own);
         if (own.unmet.size() == base_.unmet.size()) break;
       } catch (const InvalidProblem& unsound) {
         const Fault& fault = unsound.faults().front();
@@ -246,30 +279,30 @@ class Encloser {
     }
   }
 
-  std::unique_ptr<Neighbour> at(const Quantity& quantity, double z) const {
-    return std::make_unique<Neighbour>(discrete().problem, quantity, z, condensed_, fields_, settings_,
+  std::unique_ptr<Neighbour> at(const QuantityOnMesh& asked, double z) const {
+    return std::make_unique<Neighbour>(discrete().problem, asked, z, condensed_, fields_, settings_,
                                        progress_);
   }
 
   /// By neighbours that are so much nearer than what is best.
-  void enclose(const Quantity& quantity, double shorter, EnclosedQuantity& own) {
+  void enclose(const QuantityOnMesh& asked, double shorter, EnclosedQuantity& own) {
+    const Quantity& quantity = asked.quantity();
     const double radius = enclosure_.radius(), target = size_ > 0 ? relative_step(radius / size_) * size_ : 0;
     const double response = guessed_response(quantity, discrete().mesh, discrete().problem.material);
     double z = shorter * (response > 0 && target > 0 ? target / response : 1);
-    std::unique_ptr<Neighbour> plus = at(quantity, z);
-    const double moved = std::sqrt(
-        energy_norm_squares(discrete(), plus->fields().stress - solution_.stress, laws_, progress_).sum());
+    std::unique_ptr<Neighbour> plus = at(asked, z);
+    const double moved = norm_of(plus->fields().stress - solution_.stress, discrete());
     const double wanted = shorter * target;
     if (wanted > 0 && moved > 0 && (moved < kLeastStep * wanted || moved > kMostStep * wanted)) {
       z *= std::clamp(wanted / moved, 1 / kMostCorrection, kMostCorrection);
-      plus = at(quantity, z);
+      plus = at(asked, z);
     }
-    QuantityEnclosure::Bounds found = bounds(quantity, *plus, z, own.unmet);
+    QuantityEnclosure::Bounds found = bounds(asked, *plus, z, own.unmet);
     if (own.unmet.size() == base_.unmet.size() && 0 < found.way && found.way < kShortWay * radius) {
       plus.reset();
       std::vector<std::string> unmet = own.unmet;
       const double longer = z * radius / found.way;
-      QuantityEnclosure::Bounds other = bounds(quantity, *at(quantity, longer), longer, unmet);
+      QuantityEnclosure::Bounds other = bounds(asked, *at(asked, longer), longer, unmet);
       if (unmet.size() == own.unmet.size() && other.upper - other.lower < found.upper - found.lower)
         found = std::move(other);
     }
@@ -281,13 +314,14 @@ class Encloser {
   }
 
   /// By a neighbour at z, and one at −z where that will not do. Adds to `unmet` why they do not count.
-  QuantityEnclosure::Bounds bounds(const Quantity& quantity, Neighbour& plus, double z,
+  QuantityEnclosure::Bounds bounds(const QuantityOnMesh& asked, Neighbour& plus, double z,
                                    std::vector<std::string>& unmet) {
+    const Quantity& quantity = asked.quantity();
     const CertifiedSolution of_plus = plus.certified(laws_, progress_);
     add(of_plus.unmet, unmet);
     if (is_admissible_reflected(base_, of_plus, quantity, z, progress_))
       return enclosure_.reflected(quantity, of_plus, z);
-    const std::unique_ptr<Neighbour> minus = at(quantity, -z);
+    const std::unique_ptr<Neighbour> minus = at(asked, -z);
     const CertifiedSolution of_minus = minus->certified(laws_, progress_);
     add(of_minus.unmet, unmet);
     return enclosure_(quantity, of_plus, of_minus, z);

@@ -12,6 +12,7 @@
 #include "mesh/domain_mesh.hpp"
 #include "problem/fields.hpp"
 #include "progress/progress.hpp"
+#include "run/region.hpp"
 #include "solve.hpp"
 
 namespace signorini {
@@ -261,103 +262,24 @@ std::vector<Fault> faults_of_sweep(const Problem& problem, const std::vector<Var
 
 namespace {
 
-double distance_to_edge(const Mesh& mesh, int edge, const Point& x) {
-  const Point &a = mesh.points[mesh.edges[edge][0]], &b = mesh.points[mesh.edges[edge][1]];
-  const double s = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0., 1.);
-  return (a + s * (b - a) - x).norm();
-}
-
-/// Beside the body and its coordinates. In a smaller disc the sign of a difference of squares is not known,
-/// for rounding is taken to be 1e-14 of them (formula/interval.hpp).
-constexpr double kLeastDisc = 1e-6;
-
-bool can_be_seen(const Mesh& mesh, const Disc& disc) {
-  return disc.radius >= kLeastDisc * std::max(mesh.diameter(), disc.centre.norm());
-}
-
-/// Or on its boundary, but for rounding.
-bool is_inside(const Mesh& mesh, const Point& x) {
-  constexpr double rounding = 1e-12;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const AffineMap map(mesh.corners(t));
-    const Point local = map.jacobian.inverse() * (x - map.origin);
-    if (local.minCoeff() >= -rounding && local.sum() <= 1 + rounding) return true;
-  }
-  return false;
-}
-
-bool contains(const Mesh& mesh, const Disc& disc) {
-  for (const BoundaryPart& part : mesh.boundary)
-    for (const int edge : part.edges)
-      if (distance_to_edge(mesh, edge, disc.centre) < disc.radius) return false;
-  return is_inside(mesh, disc.centre);
-}
-
-/// The way from a to b crosses that from c to d, in no end of either.
-bool crosses(const Point& a, const Point& b, const Point& c, const Point& d) {
-  const auto side = [](const Point& from, const Point& to, const Point& x) {
-    const Vector way = to - from, off = x - from;
-    return way.x() * off.y() - way.y() * off.x();
-  };
-  const auto differ = [](double one, double other) {
-    return (one < 0 && other > 0) || (one > 0 && other < 0);
-  };
-  return differ(side(a, b, c), side(a, b, d)) && differ(side(c, d, a), side(c, d, b));
-}
-
-/// By a ray to the right (Sutherland and others 1974).
-bool is_inside(const std::vector<Point>& corners, const Point& x) {
-  bool inside = false;
-  for (std::size_t i = 0, before = corners.size() - 1; i < corners.size(); before = i++) {
-    const Point &a = corners[i], &b = corners[before];
-    if ((a.y() > x.y()) != (b.y() > x.y()) &&
-        x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
-}
-
-bool is_simple(const std::vector<Point>& corners) {
-  const std::size_t n = corners.size();
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 1; j < n; ++j)
-      if (crosses(corners[i], corners[(i + 1) % n], corners[j], corners[(j + 1) % n])) return false;
-  return true;
-}
-
-/// Its corners lie in the body, no side crosses the boundary, and no hole lies within.
-bool contains(const Mesh& mesh, const Outline& outline) {
-  const std::vector<Point>& corners = outline.corners;
-  for (const BoundaryPart& part : mesh.boundary)
-    for (const int edge : part.edges) {
-      const Point &a = mesh.points[mesh.edges[edge][0]], &b = mesh.points[mesh.edges[edge][1]];
-      for (std::size_t i = 0; i < corners.size(); ++i)
-        if (crosses(a, b, corners[i], corners[(i + 1) % corners.size()])) return false;
-      // Of an edge that lies on a side rounding tells nothing, and of the next one across neither.
-      const Vector inwards = (a - b).norm() * kLeastDisc * mesh.outward_normal(edge);
-      if (is_inside(corners, (a + b) / 2 + inwards)) return false;
-    }
-  return std::ranges::all_of(corners, [&](const Point& x) { return is_inside(mesh, x); });
-}
-
-void check_outlines(const Problem& problem, const Mesh& mesh, std::vector<Fault>& faults) {
+void check_outlines(const Problem& problem, const Region& body, std::vector<Fault>& faults) {
   for (const Quantity& quantity : problem.quantities) {
     if (!quantity.outline) continue;
     const std::string& name = quantity.outline->name;
-    if (!is_simple(quantity.outline->corners))
+    if (!is_simple(*quantity.outline))
       faults.push_back({name, "has sides that cross each other: give its corners one after the other"});
-    else if (!contains(mesh, *quantity.outline))
+    else if (!body.contains(*quantity.outline))
       faults.push_back({name, "must lie in the body: the mean is one over the whole polygon"});
   }
 }
 
-void check_discs(const Problem& problem, const Mesh& mesh, std::vector<Fault>& faults) {
+void check_discs(const Problem& problem, const Region& body, std::vector<Fault>& faults) {
   for (const Quantity& quantity : problem.quantities) {
     if (!quantity.disc) continue;
     const auto& [name, disc] = std::tie(quantity.disc->name, *quantity.disc);
-    if (!contains(mesh, disc))
+    if (!body.contains(disc))
       faults.push_back({name, "must lie in the body: the mean is one over the whole disc"});
-    else if (!can_be_seen(mesh, disc))
+    else if (!body.can_be_seen(disc))
       faults.push_back({name,
                         "must have a radius of at least a millionth of the body's size and coordinates: "
                         "of a smaller one nothing is guaranteed"});
@@ -370,8 +292,11 @@ DataCheck check_data(const Problem& problem, const std::vector<Variation>& sweep
                      double most_steps, Progress* progress) {
   Validation validation(problem, most_steps, progress);
   DataCheck check{validation.run_on(mesh), validation.is_complete()};
-  check_discs(problem, mesh, check.faults);
-  check_outlines(problem, mesh, check.faults);
+  if (!problem.quantities.empty()) {
+    const Region body(mesh);
+    check_discs(problem, body, check.faults);
+    check_outlines(problem, body, check.faults);
+  }
   check_sweep(problem, sweep, mesh, most_steps, most_steps, progress, check);
   return check;
 }

@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "problems/families.hpp"
+#include "problems/long_tests.hpp"
 #include "problems/membrane.hpp"
 #include "problems/seconds_at_work.hpp"
 #include "run/study.hpp"
-#include "server/long_tests.hpp"
 
 namespace signorini::cancel_test {
 namespace {
@@ -117,7 +117,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
                     {{"/0", MeshRequest(Divisions{80, 80})}, {"/1", MeshRequest(Divisions{160, 160})}},
                     {}};
   const Settings paper_form{PaperUzawa{0.1, 1, 0.5, 1e-9, 1000}, {}};
-  const Problem long_contact = strip(server::long_tests() ? 4000 : 400, 2, Scheme::conforming);
+  const Problem long_contact = strip(long_tests() ? 4000 : 400, 2, Scheme::conforming);
   return {{solves_again(long_contact, {}), 4},
           {solves_again(long_contact, {ActiveSet{}, {}}), 4},
           {solves(membrane_on(disc(100), MeshRequest(LargestEdge{3e-3}), {"side0"})), 4},
@@ -140,11 +140,11 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
 TEST(Cancel, EndsASolveWithinAQuarterOfASecondWhateverItDoes) {
   std::mt19937 random(5);
   std::vector<double> late;
-  const int rounds = server::long_tests() ? 20 : 1;
+  const int rounds = long_tests() ? 20 : 1;
   const auto all = problems_to_cancel();
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const double most = server::long_tests() ? all[i].second : std::min(1.5, all[i].second);
+      const double most = long_tests() ? all[i].second : std::min(1.5, all[i].second);
       const double moment = seconds_at_work() + std::uniform_real_distribution<>(0.01, most)(random);
       CancelsAt observer(moment);
       try {

@@ -1,10 +1,12 @@
 // Loads that jump along curves.
 #include "fem/load_projection.hpp"
 
+#include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "fem/lagrange.hpp"
 #include "mesh/domain_mesh.hpp"
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
@@ -41,6 +43,54 @@ TEST(LoadProjection, SharesItsCellsAmongAllTrianglesAlongACurve) {
     EXPECT_GT(uncertain, 0) << n;
     EXPECT_NEAR(integral(loads, mesh), exact, uncertain) << n;
   }
+}
+
+/// ‖f − p‖ on a triangle, by the middles of many pieces, for the values p at the nodes.
+double distance(const Field& f, const ProjectedLoad::Nodes& nodes, const std::array<Point, 3>& corners) {
+  constexpr int n = 40;
+  const AffineMap map(corners);
+  double sum = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n - i; ++j)
+      for (const double at : {1. / 3, 2. / 3}) {
+        if (at > 0.5 && j == n - i - 1) continue;
+        const Point x((i + at) / n, (j + at) / n);
+        const double off = f(map(x)) - (nodes * quadratic_basis(x))[0];
+        sum += map.determinant / 2 / (n * n) * off * off;
+      }
+  return std::sqrt(sum);
+}
+
+/// What is known of two loads is known of their sum, by as much as both are off.
+TEST(LoadProjection, OfASumIsTheSum) {
+  const std::string smooth = "sin(9*x) * y", jump = "x + 2*y < 1.1 ? 5 : -1", constant = "2";
+  const Problem paper = problems::paper(Scheme::conforming, 4);
+  const Mesh mesh = make_domain_mesh(paper.domain, paper.mesh);
+  const auto projected = [&](const VectorField& load) {
+    Problem problem = paper;
+    problem.body = load;
+    return LoadProjection(problem, mesh);
+  };
+  for (const auto& [one, other] :
+       {std::pair{smooth, jump}, {jump, smooth}, {constant, smooth}, {smooth, constant}, {jump, jump}})
+    for (const double z : {0.7, -3.}) {
+      SCOPED_TRACE(one + " and " + std::to_string(z) + " times " + other);
+      const VectorField f(problems::formula(one)), q(problems::formula(other)), both = f.plus(z, q);
+      const LoadProjection whole = projected(both), sum = projected(f).plus(z, projected(q));
+      EXPECT_EQ(sum.varies(), whole.varies());
+      EXPECT_TRUE(sum.unmet().empty());
+      double uncertain = 0;
+      for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+        uncertain += sum[t].uncertain_force + whole[t].uncertain_force;
+        constexpr double of_sampling = 1.1, rounding = 1e-9;
+        EXPECT_LE(distance(both.fields()[0], sum[t].projection, mesh.corners(t)),
+                  of_sampling * sum[t].rest + rounding);
+        EXPECT_LE(distance(both.fields()[0], sum[t].balanced, mesh.corners(t)),
+                  of_sampling * sum[t].unbalanced + rounding);
+        EXPECT_GE(sum[t].uncertain_work, sum[t].uncertain_force);
+      }
+      EXPECT_NEAR(integral(sum, mesh), integral(whole, mesh), uncertain + 1e-9);
+    }
 }
 
 /// Rounding, beside the numbers on a triangle, must not hide a place that is small but where the load is not.

@@ -3,22 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <random>
 
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
+#include "problems/long_tests.hpp"
 #include "problems/sanitized.hpp"
 #include "progress/memory_meter.hpp"
 #include "run/study.hpp"
 
 namespace signorini::memory_test {
 namespace {
-
-bool long_tests() {
-  return std::getenv("SIGNORINI_LONG_TESTS") != nullptr;
-}
 
 Problem elastic(Scheme scheme, int x, int y) {
   Problem problem = problems::pressed_block(scheme, Pattern::right, 0.3, 1);
@@ -96,6 +92,21 @@ TEST_P(Memory, OfOtherMeshesAndLaws) {
   varying.material = YoungPoisson{problems::formula("3 + x"), Field(0.3), Plane::strain};
   varying.body = VectorField(problems::formula("sin(x)"), Field(-1));
   expect_bound(varying, {ActiveSet{}, std::nullopt}, tables_of_laws);
+}
+
+/// Two neighbours at a time, and the load of the quantity beside them.
+TEST_P(Memory, OfQuantitiesIsThatOfTheirNeighbours) {
+  Quantity mean;
+  mean.name = "mean";
+  const int n = long_tests() ? 96 : 50;
+  mean.density = VectorField(problems::formula("x * (1 - x)"));
+  Problem sagging = membrane(GetParam(), n, n);
+  sagging.quantities = {mean};
+  expect_bound(sagging);
+  mean.density = VectorField(Field(0), problems::formula("x * (1 - x)"));
+  Problem pressed = elastic(GetParam(), n, n);
+  pressed.quantities = {mean};
+  expect_bound(pressed);
 }
 
 /// A comb of so many teeth, as far from each other as they are wide.

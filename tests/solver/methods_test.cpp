@@ -320,5 +320,29 @@ TEST(Units, PaperFormScalesWithItsParameters) {
   }
 }
 
+/// Whoever reads the history as it grows gets numbers.
+TEST(Methods, ShowNoRowThatIsNotFinite) {
+  struct Reader : Observer {
+    void iterated(const Iteration& row) override {
+      for (const double number :
+           {row.clearance_change, row.equilibrium, row.penetration, row.tension, row.complementarity})
+        EXPECT_TRUE(std::isfinite(number)) << row.number;
+    }
+  } reader;
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const double size : {1e150, 1e290, 1e299, 1e308})
+      for (const Settings& settings :
+           {Settings{ActiveSet{}, {}}, Settings{Mprgp{}, {}}, Settings{PaperUzawa{0.1, 1}, {}}}) {
+        Problem problem = problems::paper(scheme, 6);
+        problem.body = VectorField(-size);
+        problem.boundary = {{"left", Fixed{}}, {"bottom", Contact{Field(size / 10)}}};
+        try {
+          solve(problem, settings, reader);
+        } catch (const SolveError&) {
+          // It may say so instead.
+        }
+      }
+}
+
 }  // namespace
 }  // namespace signorini::methods_test

@@ -2,11 +2,14 @@
 #include <cmath>
 #include <random>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "problems/elasticity.hpp"
+#include "problems/long_tests.hpp"
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
+#include "problems/seconds_at_work.hpp"
 #include "solve.hpp"
 
 namespace signorini::quantity_test {
@@ -125,6 +128,32 @@ TEST(QuantityOfABlock, IsForeseenInMemory) {
     EXPECT_LE(peak, estimate(problem).memory_bytes);
     EXPECT_GE(2 * peak, estimate(problem).memory_bytes);
   }
+}
+
+/// By whoever asks for an estimate, within a factor that machines differ by.
+TEST(QuantityOfABlock, IsForeseenInSeconds) {
+  if (sanitized) GTEST_SKIP() << "sanitizers take time";
+  const auto seconds = [](const Problem& problem) {
+    const double begin = seconds_at_work();
+    solve(problem, {ActiveSet{}, {}});
+    return seconds_at_work() - begin;
+  };
+  Quantity in_disc = mean_in("disc", VectorField(Field(0), formula("(x-0.3)^2 + (y-0.3)^2 < 0.04 ? 8 : 0")));
+  in_disc.disc = Disc{{0.3, 0.3}, 0.2, "/disc"};
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const std::vector<Quantity>& quantities :
+         {std::vector(8, pressure_force("bottom", Field(1))), std::vector(2, in_disc)}) {
+      Problem problem = block(scheme, 32);
+      problem.quantities.clear();
+      const double without = seconds(problem), estimated_without = estimate(problem).seconds;
+      problem.quantities = quantities;
+      const double taken = seconds(problem) - without,
+                   foreseen = estimate(problem).seconds - estimated_without;
+      EXPECT_LE(taken, 5 * foreseen) << quantities[0].name;
+      EXPECT_GE(taken, foreseen / 5) << quantities[0].name;
+      const std::vector<Variation> sweep(10, Variation{"", problem.body, problem.boundary, ""});
+      EXPECT_NEAR(estimate(problem, sweep, {}).seconds, estimated_without + 11 * foreseen, 1e-9);
+    }
 }
 
 /// What the top takes is what acts from below and the weight; of moments the same.
@@ -404,34 +433,47 @@ void expect_enclosed(Problem problem) {
   expect_enclosed(*on_coarse.certified, *on_fine.certified);
   const auto &coarse = on_coarse.quantities, &fine = on_fine.quantities;
   ASSERT_EQ(coarse.size(), fine.size());
-  std::size_t guaranteed = 0;
+  const bool touches_beside_support = condition_on<Contact>(problem, "left");
   for (std::size_t i = 0; i < coarse.size(); ++i) {
     const EnclosedQuantity &own = coarse[i], &better = fine[i];
-    if (!own.guaranteed || !better.guaranteed) continue;
-    ++guaranteed;
+    if (!own.guaranteed || !better.guaranteed) {
+      // A reaction may be none that the energy bounds, and then says so.
+      EXPECT_TRUE(touches_beside_support && !problem.quantities[i].motions.empty()) << own.name;
+      const EnclosedQuantity& unclaimed = own.guaranteed ? better : own;
+      EXPECT_THAT(unclaimed.unmet, testing::Contains(testing::HasSubstr("beside a support"))) << own.name;
+      continue;
+    }
     EXPECT_LE(own.lower, better.estimate) << own.name;
     EXPECT_GE(own.upper, better.estimate) << own.name;
     EXPECT_LE(better.lower, own.upper) << own.name;
     EXPECT_GE(better.upper, own.lower) << own.name;
   }
-  // A reaction may be none that the energy bounds, where a contact touches beside its support.
-  EXPECT_GE(guaranteed + 1, coarse.size());
+}
+
+constexpr unsigned kSeeds = 8;
+
+/// The problems of a seed; `tests/run --long` takes so many in all.
+void expect_all_enclosed(Problem (*make)(unsigned), unsigned seed, unsigned in_all) {
+  for (unsigned own = seed; own < (long_tests() ? in_all : kSeeds); own += kSeeds) {
+    SCOPED_TRACE("seed " + std::to_string(own));
+    expect_enclosed(make(own));
+  }
 }
 
 TEST_P(RandomQuantities, OfMembranesAreEnclosed) {
-  expect_enclosed(random_membrane(GetParam()));
+  expect_all_enclosed(random_membrane, GetParam(), 56);
 }
 
 TEST_P(RandomQuantities, OfBodiesAreEnclosed) {
-  expect_enclosed(random_body(GetParam()));
+  expect_all_enclosed(random_body, GetParam(), 32);
 }
 
 TEST_P(RandomQuantities, OfRollingBodiesAreEnclosed) {
-  expect_enclosed(random_rolling_body(GetParam()));
+  expect_all_enclosed(random_rolling_body, GetParam(), 32);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomQuantities,
-                         sanitized ? testing::Range(1u, 2u) : testing::Range(0u, 8u));
+                         sanitized ? testing::Range(1u, 2u) : testing::Range(0u, kSeeds));
 
 }  // namespace
 }  // namespace signorini::quantity_test

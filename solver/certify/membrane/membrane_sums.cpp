@@ -91,7 +91,8 @@ std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
 }
 
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
-  const bool lifted = is_lifted(terms_, t), cubic = balance_on(t).has_value();
+  const std::optional<QuadraticBalance::Data> balance = balance_on(t);
+  const bool lifted = is_lifted(terms_, t), cubic = balance.has_value();
   const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
   const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
   TriangleSums sums;
@@ -101,15 +102,15 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   };
   if (pieces.empty()) {
     const int degree = degree_on(laws.whole(t));
-    integrate(t, rule_for(degree), laws.whole(t).error_of_rule(degree, of_fields), law, sums);
+    integrate(t, rule_for(degree), balance, laws.whole(t).error_of_rule(degree, of_fields), law, sums);
   }
   for (const LawPiece& piece : pieces) {
     const int degree = degree_on(piece);
     std::vector<WeightedPoint> points;
     for (const auto& [point, weight] : signorini::rule_of_degree(degree))
       points.push_back({piece.place(point), piece.place.share * weight});
-    integrate(t, Rule(discrete_.spaces(), std::move(points), cubic), piece.error_of_rule(degree, of_fields),
-              law, sums);
+    integrate(t, Rule(discrete_.spaces(), std::move(points), cubic), balance,
+              piece.error_of_rule(degree, of_fields), law, sums);
   }
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
@@ -126,8 +127,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   return sums;
 }
 
-void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>& law,
-                             TriangleSums& sums) const {
+void MembraneSums::integrate(int t, const Rule& rule, const std::optional<QuadraticBalance::Data>& balance,
+                             double error, LawField<1>& law, TriangleSums& sums) const {
   const AffineMap map(discrete_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = displacement_on<1>(terms_, t);
@@ -143,7 +144,6 @@ void MembraneSums::integrate(int t, const Rule& rule, double error, LawField<1>&
     stream_function_of_tau = stream_function - second_->stream_function_on(discrete_.mesh, t);
   }
   const Quadratic<1> acting = quadratic_load<1>(discrete_, t);
-  const std::optional<QuadraticBalance::Data> balance = balance_on(t);
   const bool curled = !stream_function.isZero(0), lifted = is_lifted(terms_, t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {

@@ -71,6 +71,9 @@ TensorMap<D> stiffness_from_above(int t, const AffineMap& map, LawField<D>& law,
 
 double Extensions::Hat::operator()(const Point& x) const {
   const Vector way = end - begin;
+  // Most points are far away, which is seen without a root.
+  const double far = way.cwiseAbs().sum() / 2 + reach;
+  if ((x - (begin + end) / 2).squaredNorm() > far * far) return 0;
   const double s = std::clamp((x - begin).dot(way) / way.squaredNorm(), 0., 1.);
   return std::max(0., 1 - (begin + s * way - x).norm() / reach);
 }
@@ -263,6 +266,12 @@ Extension Extensions::finished(Extension own) const {
   for (const auto& [point, turn] : turns_)
     own.at_points.col(point) = (turn * own.at_points.col(point)).eval();
   return own;
+}
+
+std::vector<Extension::Clash> Extensions::clashes(const std::vector<int>& moved, const Given& given) const {
+  std::vector<Extension::Clash> found;
+  held(moved, given, found);
+  return found;
 }
 
 Extension Extensions::operator()(const std::vector<int>& moved, const Given& given) const {

@@ -40,6 +40,9 @@ class Extensions {
   /// What is given on the parts that move, and 0 on all other supports.
   Extension operator()(const std::vector<int>& moved, const Given& given) const;
 
+  /// Where it clashes, without a solve.
+  std::vector<Extension::Clash> clashes(const std::vector<int>& moved, const Given& given) const;
+
   /// A function that falls from 1 on a segment to 0 at a distance, and what is to be reached on the segment.
   struct Hat {
     Point begin, end;

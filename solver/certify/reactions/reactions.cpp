@@ -23,6 +23,14 @@ Extensions::Given along(const SupportMotion& motion, const Mesh& mesh) {
   return [motion, &mesh](int point, const Vector& d) { return motion(mesh.points[point]).dot(d); };
 }
 
+/// (φ, hat) for the six quadratic functions and the three hats, on the reference triangle.
+Eigen::Matrix<double, 6, 3> work_on_hats() {
+  Eigen::Matrix<double, 6, 3> products = Eigen::Matrix<double, 6, 3>::Zero();
+  for (const auto& [point, weight] : rule_of_degree(kWork))
+    products += weight * quadratic_basis(point) * triangle_basis(1, point).transpose();
+  return products;
+}
+
 }  // namespace
 
 Reactions::Reactions(const Discretization& discrete, const Solution& solution, const Extensions& extensions,
@@ -37,9 +45,17 @@ Reactions::Reactions(const Discretization& discrete, const Solution& solution, c
     add_stress<1>();
   else
     add_stress<2>();
-  for (int t = 0; t < discrete.triangles(); ++t) add_load(t);
-  for (int edge = 0; edge < static_cast<int>(discrete.mesh.edges.size()); ++edge)
-    if (discrete.traction.acts_on(edge)) add_traction(edge);
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    add_load(t);
+    if (const double work = discrete.body[t].uncertain_work; work > 0)
+      uncertain_on_triangles_.emplace_back(t, work);
+  }
+  for (int edge = 0; edge < static_cast<int>(discrete.mesh.edges.size()); ++edge) {
+    if (!discrete.traction.acts_on(edge)) continue;
+    add_traction(edge);
+    if (const double work = discrete.traction[edge].uncertain_work; work > 0)
+      uncertain_on_edges_.emplace_back(edge, work);
+  }
   for (const EdgePressure& own : solution.admissible_pressure)
     if (own.begin == 0 && own.end == 1) least_pressure_[own.edge] = std::min(own.at_ends[0], own.at_ends[1]);
 }
@@ -74,13 +90,11 @@ void Reactions::add_stress() {
 void Reactions::add_load(int t) {
   const ProjectedLoad::Nodes& load = discrete_.body[t].projection;
   if (load.isZero(0)) return;
-  const AffineMap map(discrete_.mesh.corners(t));
-  for (const auto& [point, weight] : rule_of_degree(kWork)) {
-    const Eigen::VectorXd force = weight * map.determinant * load * quadratic_basis(point);
-    const LocalVector hats = triangle_basis(1, point);
+  static const Eigen::Matrix<double, 6, 3> products = work_on_hats();
+  const double twice_area = AffineMap(discrete_.mesh.corners(t)).determinant;
+  for (int c = 0; c < components(); ++c)
     for (int z = 0; z < 3; ++z)
-      for (int c = 0; c < components(); ++c) add(discrete_.mesh.triangles[t][z], c, -force[c] * hats[z]);
-  }
+      add(discrete_.mesh.triangles[t][z], c, -twice_area * load.row(c).dot(products.col(z)));
 }
 
 void Reactions::add_traction(int edge) {
@@ -102,11 +116,8 @@ double Reactions::uncertain_work(const Eigen::MatrixXd& at_points) const {
     return most;
   };
   double sum = 0;
-  for (int t = 0; t < discrete_.triangles(); ++t)
-    if (const double own = discrete_.body[t].uncertain_work; own > 0) sum += own * largest(mesh.triangles[t]);
-  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge)
-    if (discrete_.traction.acts_on(edge))
-      sum += discrete_.traction[edge].uncertain_work * largest(mesh.edges[edge]);
+  for (const auto& [t, work] : uncertain_on_triangles_) sum += work * largest(mesh.triangles[t]);
+  for (const auto& [edge, work] : uncertain_on_edges_) sum += work * largest(mesh.edges[edge]);
   return sum;
 }
 
@@ -135,10 +146,12 @@ CertifiedSupport Reactions::of(const std::vector<int>& parts, std::vector<Extens
       const Reaction& reaction = solution_.summary.parts[part];
       value += i < reaction.force.size() ? reaction.force[i] : reaction.moment;
     }
-    const Extension extension = extensions_(parts, along(all[i], discrete_.mesh));
-    clashes.insert(clashes.end(), extension.clashes.begin(), extension.clashes.end());
-    const bool is_bounded = extension.clashes.empty();
-    const EnclosedNumber number = is_bounded ? enclose(extension, value) : EnclosedNumber{value, value};
+    const Extensions::Given motion = along(all[i], discrete_.mesh);
+    const std::vector<Extension::Clash> own_clashes = extensions_.clashes(parts, motion);
+    clashes.insert(clashes.end(), own_clashes.begin(), own_clashes.end());
+    const bool is_bounded = own_clashes.empty();
+    const EnclosedNumber number =
+        is_bounded ? enclose(extensions_(parts, motion), value) : EnclosedNumber{value, value};
     if (i < 2)
       own.force.push_back(number);
     else if (is_bounded)

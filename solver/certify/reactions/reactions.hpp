@@ -2,6 +2,8 @@
 
 #include <array>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "certify/reactions/extensions.hpp"
 #include "result/solution.hpp"
@@ -45,6 +47,8 @@ class Reactions {
   Progress& progress_;
   /// (σ_h, ε(φ)) − (f, φ) − <t, φ> for the hats φ of the points, and all its terms with one sign.
   Eigen::MatrixXd work_, size_;
+  /// Of the loads, by triangles and edges; those that are known are left out.
+  std::vector<std::pair<int, double>> uncertain_on_triangles_, uncertain_on_edges_;
   std::map<int, double> least_pressure_;  ///< of p*, by edges
 };
 
