@@ -215,6 +215,17 @@ CLI::App* add_study(CLI::App& app, StudyConfig& study) {
   return command;
 }
 
+CLI::App* add_inf_sup(CLI::App& app, InfSupConfig& inf_sup) {
+  CLI::App* command = add_command(
+      app, "inf-sup",
+      "Compute the Babuska-Brezzi constant of a problem's scheme on its mesh, without a solve or a server");
+  command->add_option("--format", inf_sup.format, "Of the answer: table to read, or json")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"table", "json"}));
+  command->add_option("FILE", inf_sup.file, "Problem document; - reads standard input")->required();
+  return command;
+}
+
 CLI::App* add_check(CLI::App& app, CheckConfig& check) {
   CLI::App* command = add_command(
       app, "check", "Look through a data directory that no service runs on, and repair what is damaged");
@@ -258,10 +269,13 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   CLI::App* const solve_command = add_solve(app, solve);
   CLI::App* const study_command = add_study(app, study);
   for (CLI::App* const command : {solve_command, study_command}) factorization.add_to_command(*command);
+  InfSupConfig inf_sup;
+  const CLI::App* inf_sup_command = add_inf_sup(app, inf_sup);
   CheckConfig check;
   const CLI::App* check_command = add_check(app, check);
-  const CLI::App* health_command = add_command(
+  CLI::App* const health_command = add_command(
       app, "health", "Ask the service on --host and --port whether it lives; exit code 0 if it does");
+  health_command->fallthrough();  // the flags of the service may stand behind it
   try {
     app.parse(argc, argv);
     line.config.daemon.factorization = solve.factorization = study.factorization = factorization.value();
@@ -269,6 +283,7 @@ CommandLine read_command_line(int argc, const char* const* argv) {
     require_one_store(line.config.daemon);
     if (solve_command->parsed()) line.config.solve = solve;
     if (study_command->parsed()) line.config.study = study;
+    if (inf_sup_command->parsed()) line.config.inf_sup = inf_sup;
     if (check_command->parsed()) line.config.check = check;
     line.config.health = health_command->parsed();
     if (print_config) {

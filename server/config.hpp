@@ -57,6 +57,12 @@ struct StudyConfig {
   Factorization factorization = Factorization::multifrontal;
 };
 
+/// `signorinid inf-sup`.
+struct InfSupConfig {
+  std::string file;              ///< `-` is standard input
+  std::string format = "table";  ///< or `json`
+};
+
 /// `signorinid check`.
 struct CheckConfig {
   std::string directory;
@@ -69,6 +75,7 @@ struct Config {
   // One of these is set if that is what is asked.
   std::optional<SolveConfig> solve;
   std::optional<StudyConfig> study;
+  std::optional<InfSupConfig> inf_sup;
   std::optional<CheckConfig> check;
   bool health = false;  ///< `signorinid health`
 };

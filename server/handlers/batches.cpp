@@ -11,6 +11,7 @@
 #include "server/handlers/fields.hpp"
 #include "server/handlers/find_job.hpp"
 #include "server/handlers/submission.hpp"
+#include "server/http/conditions.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 #include "server/log.hpp"
@@ -55,6 +56,7 @@ void write_counts(api::DocumentWriter& out, const Batch& batch, const JobCounts&
 Response post_batch(Service& service, const Request& request) {
   allow_only(request.query, {});
   const std::optional<std::string> key = idempotency_key(request);
+  require_conditions(request);
   NewBatch taken = take_in_batch(service, request);
   taken.key = key;
   const Batch batch = submit(service, request, std::move(taken));
@@ -104,6 +106,7 @@ Response delete_batch(Service& service, const Request& request) {
   allow_only(request.query, {});
   const Batch batch = find_batch(service, request);
   const LogField field("batch", batch.id);
+  require_conditions(request);
   return dismissed_response(request, dismiss(service, batch.jobs));
 }
 

@@ -54,12 +54,12 @@ void write_links(DocumentWriter& out, const Job& job) {
 }
 
 std::optional<std::string> link_to_next(const JobPage& page, const ListQuery& query) {
-  if (!page.more) return std::nullopt;
+  if (!page.next) return std::nullopt;
   std::string link = "/v1/solves?limit=" + std::to_string(query.limit);
   if (query.status) link += "&status=" + std::string(name(*query.status));
   if (query.tag) link += "&tag=" + percent_encoded(*query.tag);
   if (query.title) link += "&title=" + percent_encoded(*query.title);
-  return link + "&after=" + page.jobs.back().id;
+  return link + "&after=" + *page.next;
 }
 
 }  // namespace

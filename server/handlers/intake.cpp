@@ -76,13 +76,16 @@ std::string gigabytes(double bytes) {
   return text.data();
 }
 
-void require_little_memory(const Intake& intake, const Limits& limits) {
-  const double bytes = intake.memory();
-  if (bytes <= limits.max_memory) return;
+void require_little_memory(const Intake& intake, const Limits& limits, const Identity& identity) {
+  const double bytes = intake.memory(), share = identity.share.memory.value_or(limits.max_memory);
+  if (bytes <= std::min(limits.max_memory, share)) return;
+  const std::string given =
+      share < limits.max_memory
+          ? gigabytes(share) + " to the solves of `" + identity.name + "` (memory= in the token file)"
+          : "a solve up to " + gigabytes(limits.max_memory) + " (--max-memory)";
   throw too_large("too-much-memory", "The problem", "/mesh",
-                  "It would take about " + gigabytes(bytes) +
-                      " of memory; this service gives a solve up to " + gigabytes(limits.max_memory) +
-                      " (--max-memory). Take a coarser mesh or the nonconforming scheme.");
+                  "It would take about " + gigabytes(bytes) + " of memory; this service gives " + given +
+                      ". Take a coarser mesh or the nonconforming scheme.");
 }
 
 /// What a sweep holds are the contact unknowns of its entries; and each material is as much work as a
@@ -146,7 +149,7 @@ Intake judge(std::string text, const Request& request, const Limits& limits) {
         estimate(intake.request.problem, *intake.request.study, limits.factorization, limits.max_unknowns);
   for (Estimate& run : intake.runs) run = for_solve(run, intake.request.settings);
   require_short_study(intake, limits);
-  require_little_memory(intake, limits);
+  require_little_memory(intake, limits, request.identity);
   return intake;
 }
 

@@ -8,6 +8,7 @@
 #include "server/handlers/dismiss.hpp"
 #include "server/handlers/document_response.hpp"
 #include "server/handlers/documents.hpp"
+#include "server/http/conditions.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 
@@ -94,6 +95,7 @@ Response delete_tagged(Service& service, const Request& request) {
   const auto confirmed = integer_parameter(request.query, "confirm", 0, any_number);
   const std::vector<std::string> ids = service.store.ids(query);
   const auto count = static_cast<long>(ids.size());
+  require_conditions(request);
   if (confirmed != count) throw not_confirmed(*query.tag, ids.size());
   return dismissed_response(request, dismiss(service, ids));
 }

@@ -9,6 +9,7 @@
 #include "server/handlers/intake.hpp"
 #include "server/handlers/submission.hpp"
 #include "server/handlers/wait.hpp"
+#include "server/http/conditions.hpp"
 #include "server/http/error.hpp"
 #include "server/http/query.hpp"
 #include "server/log.hpp"
@@ -98,6 +99,7 @@ Response accept(Service& service, const Request& request,
   const api::ResultFields fields = fields_of(request);
   const std::optional<Wait> wait = wait_of(request);
   const std::optional<std::string> key = idempotency_key(request);
+  require_conditions(request);
   Intake intake = take(service, request);
   require_available(fields, components(intake.request.problem.material));
   NewJob job = new_job(service, request, std::move(intake));
@@ -108,14 +110,6 @@ Response accept(Service& service, const Request& request,
   std::shared_ptr<void> place = wait ? service.waits.try_acquire() : nullptr;
   if (!place) return answer(service, request, service.store.find(id), false, fields);
   return answer_later(service, request, id, *wait, fields, std::move(place));
-}
-
-/// A solve has no ETag, so that no condition on one holds (RFC 9110, 13.1.1). Throws HttpError 412.
-void require_match(const Request& request) {
-  const std::optional<std::string> condition = request.header("If-Match");
-  if (!condition || *condition == "*") return;
-  throw HttpError(412, {"precondition-failed", "Precondition failed",
-                        "A solve has no ETag, so that only `If-Match: *` holds; nothing was changed."});
 }
 
 }  // namespace
@@ -165,7 +159,7 @@ Response delete_solve(Service& service, const Request& request) {
   Response response = Response::empty(204);
   response.job = id_of(request);
   const LogField job("job", find_job(service, request).id);
-  require_match(request);
+  require_conditions(request);
   switch (service.scheduler.dismiss(id_of(request))) {
     case Dismissal::unknown:
       throw unknown_solve();

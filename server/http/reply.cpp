@@ -52,7 +52,7 @@ Delimiter delimiter_of(const Message& message, const Response& response) {
   if (response.take_connection) return Delimiter::close;
   if (response.write_body || response.parts)
     return message.version == 10 ? Delimiter::close : Delimiter::chunks;
-  return response.status == 204 ? Delimiter::none : Delimiter::length;
+  return response.status == 204 || response.status == 304 ? Delimiter::none : Delimiter::length;
 }
 
 /// The size line of a chunk (RFC 9112, 7.1).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/http/conditions.hpp"
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
 #include "server/http/sender_fields.hpp"
@@ -160,7 +161,10 @@ Response Router::route(Request& request) const {
   if (found.wants_token()) access_.count(request.identity);
   if (request.method == "OPTIONS") return options(found.methods);
   const SenderFields sender(request);
-  return found.by_page ? route.page(request) : route.handler(request);
+  if (found.by_page) return route.page(request);
+  Response response = route.handler(request);
+  const bool looks = request.method == "GET" || request.method == "HEAD";
+  return looks ? under_conditions(request, std::move(response)) : response;
 }
 
 }  // namespace signorini::server

@@ -55,6 +55,22 @@ struct Found {
   std::vector<Iteration> iterations;  ///< wanted and not known yet; all, if the attempt is another one
 };
 
+/// Entries of a sweep that are to be a job of their own.
+struct NewChunk {
+  std::size_t first = 0, count = 0;
+  std::string problem;  ///< that has them alone as its sweep
+  double predicted_memory = 0;
+};
+
+/// How far a chunk is.
+struct ChunkStanding {
+  std::string job;
+  std::size_t first = 0, count = 0;
+  JobStatus status = JobStatus::queued;
+  std::size_t swept = 0;     ///< entries that are done, while it runs
+  bool is_given_up = false;  ///< too many died with it
+};
+
 /// What processes with one store tell each other by it. Each claim is a lease: whoever does not renew it
 /// loses it, and the job is claimed by somebody else, under a greater number of attempt. Nothing is accepted
 /// of the loser from then on. Every call may throw StoreUnavailable.
@@ -75,6 +91,19 @@ class Fleet {
   virtual void rescue() = 0;
 
   virtual std::vector<Found> look(std::span<const Sought> sought) const = 0;
+
+  /// Queues entries of a claimed job's sweep as jobs that everybody may claim and nobody lists. They are gone
+  /// when the whole has ended, and asked to end when that is. False if the claim is lost.
+  virtual bool split(const Claim& whole, std::span<const NewChunk> chunks) = 0;
+
+  /// The chunks of a job, which an earlier attempt may have made, in their order.
+  virtual std::vector<ChunkStanding> chunks(const std::string& whole) const = 0;
+
+  /// Takes a chunk that nobody has taken yet. For the runner of the whole: it takes no memory beside that.
+  virtual std::optional<Claim> claim_chunk(const std::string& whole) = 0;
+
+  /// What a chunk that has ended found; empty if nothing, or if that is damaged.
+  virtual std::vector<SweepEntry> entries(const std::string& chunk) const = 0;
 
   /// Tells the others that there may be something to claim, or to look at. Nobody relies on being told.
   virtual void hint() = 0;

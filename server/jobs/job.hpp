@@ -75,6 +75,13 @@ struct NewJob {
   std::int64_t operator_mark = 0;  ///< of the operator that its solve takes (kept_operators.hpp); 0: of none
 };
 
+/// Entries of the sweep of another job, which are solved as a job of their own.
+struct Chunk {
+  std::string whole;      ///< id of that job
+  std::size_t first = 0;  ///< of the entries
+  std::size_t count = 0;
+};
+
 /// One solve from its acceptance on, without the texts and the fields that belong to it.
 struct Job {
   std::string id;
@@ -84,7 +91,8 @@ struct Job {
   std::string trace;  ///< as in NewJob
   std::string owner;  ///< as in NewJob
   std::string batch;  ///< as in NewJob
-  Time created;
+  std::optional<Chunk> chunk = {};
+  Time created;  ///< of a chunk: when the whole was started
   std::optional<Time> started;
   std::optional<Time> finished;
   Verdict verdict;  ///< once it has ended

@@ -75,12 +75,13 @@ void Lookout::look() {
 void Lookout::follow(const Found& found) {
   if (!found.started) return;
   Mirror& mirror = mirrors_[found.job];
-  if (!mirror.live || mirror.attempt != found.attempt) {
-    mirror = {found.attempt, 0, std::make_shared<LiveSolve>(*found.started)};
-    ears_.begun(found.job, mirror.live);
-  }
+  const bool is_new = !mirror.live || mirror.attempt != found.attempt;
+  if (is_new) mirror = {found.attempt, 0, std::make_shared<LiveSolve>(*found.started)};
   mirror.live->follow(has_ended(found.status) ? mirror.live->progress() : found.progress, found.iterations);
   mirror.known += found.iterations.size();
+  // Not before: a solve of this process that has just ended is told of as over by others, with what is there
+  // then.
+  if (is_new) ears_.begun(found.job, mirror.live);
 }
 
 void Lookout::tell(const std::stop_token& stop) {

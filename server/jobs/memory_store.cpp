@@ -191,18 +191,16 @@ std::optional<Job> MemoryStore::find(const std::string& id) const {
 
 JobPage MemoryStore::list(const ListQuery& query) const {
   const std::lock_guard lock(mutex_);
-  JobPage page;
+  std::vector<Job> jobs;
+  std::optional<std::string> read_to;
+  std::size_t titles = 0;
   auto next = std::make_reverse_iterator(query.after ? entries_.lower_bound(*query.after) : entries_.end());
-  for (; next != entries_.rend(); ++next) {
+  for (; next != entries_.rend() && jobs.size() <= query.limit && !read_to; ++next) {
     const Job& job = next->second.job;
-    if (!is_asked_for(job, query)) continue;
-    if (page.jobs.size() == query.limit) {
-      page.more = true;
-      break;
-    }
-    page.jobs.push_back(job);
+    if (is_asked_for(job, query)) jobs.push_back(job);
+    if (query.title && ++titles == titles_of_a_page) read_to = job.id;
   }
-  return page;
+  return page_of(std::move(jobs), query.limit, std::move(read_to));
 }
 
 std::vector<std::string> MemoryStore::ids(const ListQuery& query) const {

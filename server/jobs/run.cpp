@@ -67,6 +67,12 @@ ProblemDetails incomplete(const std::vector<SweepEntry>& sweep) {
               ": " + (first->error.empty() ? first->advice : first->error)};
 }
 
+/// The time limit of a chunk is that of the whole.
+double seconds_before(const Claim& claim) {
+  if (!claim.job.chunk) return 0;
+  return std::chrono::duration<double>(*claim.job.started - claim.job.created).count();
+}
+
 }  // namespace
 
 Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators) {
@@ -100,14 +106,17 @@ Ending ending_of(Solution solution) {
 }
 
 Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory,
-           Factorization by) {
+           Factorization by, Helpers* helpers) {
   if (!claim.problem) return damaged_ending("problem");
   try {
     const MemoryLimit limit(max_memory);
     const auto begin = std::chrono::steady_clock::now();
     api::Request request = api::parse_request(*claim.problem, &live);
     request.settings.factorization = by;
-    request.settings.spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    request.settings.helpers = helpers;
+    request.settings.entries_alone = claim.job.chunk.has_value();
+    request.settings.spent = seconds_before(claim) +
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return ending_of(solve(request, live));
   } catch (const Cancelled&) {
     Ending ending = failed(std::current_exception(), live);

@@ -22,9 +22,9 @@ Solution solve_request(const api::Request& request, Observer& observer, Operator
 /// a result.
 Ending ending_of(Solution solution);
 
-/// Runs a job from its text to its end, within so many bytes of memory and by this factorisation. Never
-/// throws: whatever goes wrong is an ending too.
+/// Runs a job from its text to its end, within so many bytes of memory and by this factorisation, and with
+/// helpers if there are any. Never throws: whatever goes wrong is an ending too.
 Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, double max_memory,
-           Factorization by);
+           Factorization by, Helpers* helpers = nullptr);
 
 }  // namespace signorini::server

@@ -328,7 +328,7 @@ void Scheduler::cancel_all_queued() {
       const LogField field("job", job.id);
       spdlog::info("cancelled while queued");
     }
-  } while (page.more);
+  } while (page.next);
 }
 
 }  // namespace signorini::server

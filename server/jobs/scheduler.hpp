@@ -18,6 +18,7 @@
 #include "server/jobs/lookout.hpp"
 #include "server/jobs/memory_budget.hpp"
 #include "server/jobs/run.hpp"
+#include "server/jobs/shared_sweep.hpp"
 #include "server/jobs/store.hpp"
 #include "server/jobs/watch.hpp"
 
@@ -108,6 +109,8 @@ class Scheduler {
 
   void work();
   void run_to_end(const Running& running);
+  SweepHost host();
+  void hold(const Running& running);
   void count_memory(const Claim& claim);
   std::optional<Running> next();
   void give_place();

@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto idle_time = 1s;   // a store that failed is asked again, and what expired is dropped
+constexpr auto moment = 200ms;   // until others are looked at who solve the same sweep
 constexpr auto retry_time = 1s;  // between two tries to keep an ending
 constexpr auto patience_with_store = 60s;
 
@@ -73,9 +74,13 @@ void Scheduler::run_to_end(const Running& running) {
   if (!claim.job.trace.empty()) trace.emplace("trace", claim.job.trace);
   spdlog::info("started");
   count_memory(claim);
-  const Ending ending = run(claim, solve_, *running.live, memory_.left_for(claim.job.id), by_);
+  std::optional<SharedSweep> shared;
+  const bool is_whole = !claim.job.chunk;
+  if (fleet_ != nullptr && is_whole) shared.emplace(*fleet_, store_, claim, *running.live, host());
+  const Ending ending =
+      run(claim, solve_, *running.live, memory_.left_for(claim.job.id), by_, shared ? &*shared : nullptr);
   log_end(claim, ending);
-  observer_(claim.job, ending);
+  if (is_whole) observer_(claim.job, ending);
   const bool small = is_small(ending);
   if (small) give_place();
   keep(running, ending);
@@ -123,15 +128,40 @@ std::optional<Scheduler::Running> Scheduler::next() {
       if (stopping_) live->cancel();
       if (const auto watch = watch_of(claim->job.id)) watch->begin(live);
       const Running running{std::move(*claim), live};
-      Running& place = running_[running.claim.job.id];
-      // Another thread here has lost the job and may not know it yet.
-      if (place.live) place.live->lose();
-      place = running;
+      hold(running);
       return running;
     }
     queued_.wait_for(lock, idle_time, [&] { return draining_ || submissions_ != submissions; });
     ++places_;
   }
+}
+
+/// The mutex must be held.
+void Scheduler::hold(const Running& running) {
+  Running& place = running_[running.claim.job.id];
+  // Another thread here has lost the job and may not know it yet.
+  if (place.live) place.live->lose();
+  place = running;
+}
+
+SweepHost Scheduler::host() {
+  SweepHost host;
+  host.hold = [this](const Claim& chunk) {
+    const std::lock_guard lock(mutex_);
+    hold({chunk, std::make_shared<LiveSolve>(*chunk.job.started)});
+  };
+  host.let_go = [this](const Claim& chunk) {
+    const std::lock_guard lock(mutex_);
+    const auto found = running_.find(chunk.job.id);
+    if (found != running_.end() && found->second.claim.attempt == chunk.attempt) running_.erase(found);
+  };
+  host.tell = [this] { announce_submission(); };
+  host.wait = [this] {
+    std::unique_lock lock(mutex_);
+    const std::uint64_t known = submissions_;
+    queued_.wait_for(lock, moment, [&] { return stopping_ || submissions_ != known; });
+  };
+  return host;
 }
 
 std::optional<Claim> Scheduler::try_to_claim() {

@@ -85,27 +85,42 @@ std::optional<KeptClock> kept_clock(const SQLite::Database& database) {
 /// title in an index of nothing but titles. Empty: all.
 std::string candidates(const ListQuery& query) {
   const std::string of_owner = query.owner ? " AND owner = :owner" : "";
-  if (query.tag) return "SELECT job AS candidate FROM job_tags WHERE tag = :tag AND job < :after" + of_owner;
+  if (query.tag)
+    return "SELECT job AS candidate FROM job_tags WHERE tag = :tag AND job >= :oldest AND job < :after" +
+           of_owner;
   if (query.title)
-    return "SELECT id AS candidate FROM jobs INDEXED BY jobs_by_title WHERE id < :after AND "
+    return "SELECT id AS candidate FROM jobs INDEXED BY jobs_by_title WHERE id >= :oldest AND id < :after "
+           "AND "
            "instr(lower(title), :title)" +
            of_owner;
   return "";
 }
 
-/// The columns of all jobs that are asked for, newest first.
+const std::string before_every_id, beyond_every_id = "~";
+
+/// The oldest job of which a page reads the title, if there may be older ones.
+std::optional<std::string> oldest_read(const SQLite::Database& database, const ListQuery& query) {
+  if (!query.title) return std::nullopt;
+  auto row = prepared(
+      database, "SELECT id FROM jobs INDEXED BY jobs_by_title WHERE id < ? ORDER BY id DESC LIMIT 1 OFFSET ?",
+      query.after.value_or(beyond_every_id), static_cast<std::int64_t>(titles_of_a_page) - 1);
+  if (!row.executeStep()) return std::nullopt;
+  return row.getColumn(0).getString();
+}
+
+/// The columns of all jobs that are asked for, newest first; none is older than the oldest.
 SQLite::Statement selection(const SQLite::Database& database, const std::string& columns,
-                            const ListQuery& query, std::int64_t limit) {
+                            const ListQuery& query, const std::string& oldest, std::int64_t limit) {
   const std::string first = candidates(query);
   std::string sql = "SELECT " + columns + " FROM ";
   sql += first.empty() ? "jobs" : "(" + first + ") CROSS JOIN jobs ON id = candidate";
-  sql += " WHERE id < :after";
+  sql += " WHERE id >= :oldest AND id < :after";
   if (query.status) sql += " AND status = '" + std::string(name(*query.status)) + "'";
   if (query.owner) sql += " AND jobs.owner = :owner";
   if (query.title) sql += " AND instr(lower(title), :title)";
   sql += std::string(" ORDER BY ") + (first.empty() ? "id" : "candidate") + " DESC LIMIT :limit";
   SQLite::Statement row(database, sql);
-  const std::string beyond_every_id = "~";
+  row.bind(":oldest", oldest);
   row.bind(":after", query.after.value_or(beyond_every_id));
   row.bind(":limit", limit);
   if (query.owner) row.bind(":owner", *query.owner);
@@ -543,12 +558,12 @@ std::optional<Job> SqliteStore::find(const std::string& id) const {
 
 JobPage SqliteStore::list(const ListQuery& query) const {
   return read([&] {
-    JobPage page;
-    auto row = selection(reader_, job_columns, query, static_cast<std::int64_t>(query.limit) + 1);
-    while (row.executeStep()) page.jobs.push_back(job_of(row));
-    page.more = page.jobs.size() > query.limit;
-    if (page.more) page.jobs.pop_back();
-    return page;
+    std::optional<std::string> read_to = oldest_read(reader_, query);
+    auto row = selection(reader_, job_columns, query, read_to.value_or(before_every_id),
+                         static_cast<std::int64_t>(query.limit) + 1);
+    std::vector<Job> jobs;
+    while (row.executeStep()) jobs.push_back(job_of(row));
+    return page_of(std::move(jobs), query.limit, std::move(read_to));
   });
 }
 
@@ -556,7 +571,7 @@ std::vector<std::string> SqliteStore::ids(const ListQuery& query) const {
   constexpr std::int64_t all = -1;
   return read([&] {
     std::vector<std::string> ids;
-    auto row = selection(reader_, "id", query, all);
+    auto row = selection(reader_, "id", query, before_every_id, all);
     while (row.executeStep()) ids.push_back(row.getColumn(0).getString());
     return ids;
   });

@@ -73,10 +73,23 @@ struct ListQuery {
   std::optional<std::string> after = {};  ///< only jobs that are older than this id
 };
 
+/// Of so many jobs at most a list reads the titles; a search goes on with its next page.
+constexpr std::size_t titles_of_a_page = 10'000;
+
 struct JobPage {
-  std::vector<Job> jobs;  ///< newest first
-  bool more = false;
+  std::vector<Job> jobs;                 ///< newest first, perhaps fewer than the limit
+  std::optional<std::string> next = {};  ///< what is older than this id is on the next page; none on the last
 };
+
+/// The page of jobs of which one more than the limit was looked for. `read_to` is where a search by title
+/// ended before the end.
+inline JobPage page_of(std::vector<Job> jobs, std::size_t limit, std::optional<std::string> read_to) {
+  if (jobs.size() > limit) {
+    jobs.pop_back();
+    read_to = jobs.back().id;
+  }
+  return {std::move(jobs), std::move(read_to)};
+}
 
 using JobCounts = std::map<JobStatus, std::size_t>;
 

@@ -261,6 +261,7 @@ TEST_P(Batches, GoOnWithoutTheSolvesThatAreDeleted) {
   ASSERT_TRUE(
       listen_until(client, 5s, [&] { return client[0].heard().find("succeeded") != std::string::npos; }));
   // All of them while somebody listens.
+  expect_problem(client_->Delete(std::string(batch.at("links").at("self")), {{"If-Match", "\"x\""}}), 412);
   const auto gone = client_->Delete(std::string(batch.at("links").at("self")));
   EXPECT_EQ(json::parse(gone->body), (json{{"cancelled", 1}, {"deleted", 1}}));
   ASSERT_TRUE(listen_until(client, 5s, [&] { return client[0].heard().ends_with("\r\n0\r\n\r\n"); }));

@@ -6,8 +6,9 @@
 #include <fstream>
 #include <thread>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
-#include "long_tests.hpp"
 #include "server/jobs/retention_clock.hpp"
 
 namespace signorini::server::clock_test {

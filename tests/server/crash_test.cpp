@@ -11,9 +11,10 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
-#include "long_tests.hpp"
 #include "server/jobs/sqlite_store.hpp"
 #include "temporary_directory.hpp"
 

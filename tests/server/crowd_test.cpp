@@ -7,8 +7,9 @@
 
 #include <sys/resource.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
-#include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 
@@ -49,6 +50,14 @@ std::string long_problem() {
   return problem.dump();
 }
 
+httplib::Client patient_client(int port) {
+  httplib::Client client("127.0.0.1", port);
+  client.set_read_timeout(60);
+  client.set_keep_alive(true);
+  client.set_tcp_nodelay(true);
+  return client;
+}
+
 TEST(Crowd, OfEveryKindLeavesTheServiceToOthers) {
   const Crowd crowd = crowd_for_test();
   // From one address to one port there are some 28 000 connections.
@@ -57,10 +66,7 @@ TEST(Crowd, OfEveryKindLeavesTheServiceToOthers) {
     GTEST_SKIP() << "this machine allows " << descriptors_allowed() << " descriptors a process (ulimit -n), "
                  << needed << " are needed";
   Daemon daemon({"--workers", "1", "--max-subscribers", std::to_string(crowd.streams)});
-  httplib::Client client("127.0.0.1", daemon.port());
-  client.set_read_timeout(60);
-  client.set_keep_alive(true);
-  client.set_tcp_nodelay(true);
+  httplib::Client client = patient_client(daemon.port());
   const std::string body = long_problem();
   const auto accepted = client.Post("/v1/solves", {{"Idempotency-Key", "one"}}, body, "application/json");
   ASSERT_EQ(accepted->status, 202) << accepted->body;
@@ -94,12 +100,14 @@ TEST(Crowd, OfEveryKindLeavesTheServiceToOthers) {
   }
   for (std::size_t i = 0; i < crowd.idle; ++i) others.emplace_back(daemon.port());
 
+  // The connection of the first client idled, and may have given way to those who came.
+  httplib::Client asker = patient_client(daemon.port());
   std::vector<double> milliseconds;
   for (int i = 0; i < (long_tests() ? 2000 : 300); ++i) {
     const auto begin = Clock::now();
-    const auto reply = client.Get(path);
+    const auto reply = asker.Get(path);
     milliseconds.push_back(std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
-    ASSERT_TRUE(reply);
+    ASSERT_TRUE(reply) << i << ": " << httplib::to_string(reply.error());
     ASSERT_EQ(reply->status, 200);
     if (i % 20 == 0)
       for (RawClient& stream : streams) stream.receive();

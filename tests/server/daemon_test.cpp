@@ -8,8 +8,9 @@
 #include <sstream>
 #include <thread>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "api/examples.hpp"
-#include "long_tests.hpp"
 
 namespace signorini::server::daemon_test {
 namespace {
@@ -316,7 +317,7 @@ TEST(HealthCommand, SaysWhetherTheServiceLives) {
   EXPECT_EQ(well.wait(60s), 0) << well.standard_error();
   daemon.process().signal(SIGTERM);
   EXPECT_EQ(daemon.process().wait(5 * soon), 0);
-  ChildProcess ill({"--port", port, "health"});
+  ChildProcess ill({"health", "--port", port});
   EXPECT_EQ(ill.wait(60s), 1);
   EXPECT_NE(ill.standard_error().find("no service answers"), std::string::npos);
 }
@@ -458,9 +459,12 @@ TEST(SolveCommand, BadInputHasExitCode2) {
     EXPECT_TRUE(json::parse(process.standard_error()).contains("title")) << text;
     EXPECT_EQ(process.standard_output(), "");
   }
-  ChildProcess missing({"solve", "/nonexistent.json"});
-  EXPECT_EQ(missing.wait(60s), 2);
-  EXPECT_EQ(json::parse(missing.standard_error()).at("title"), "The file cannot be read");
+  for (const char* file : {"/nonexistent.json", "/tmp"})
+    for (const char* command : {"solve", "study"}) {
+      ChildProcess unreadable({command, file});
+      EXPECT_EQ(unreadable.wait(60s), 2) << file;
+      EXPECT_EQ(json::parse(unreadable.standard_error()).at("title"), "The file cannot be read");
+    }
   for (const std::vector<std::string>& flags :
        std::vector<std::vector<std::string>>{{"--fields", "everything"},
                                              {"--fields", "von_mises"},  // of a membrane
@@ -510,6 +514,49 @@ TEST(StudyCommand, NeedsAStudy) {
   EXPECT_EQ(process.wait(60s), 2);
   EXPECT_NE(process.standard_error().find("no-study"), std::string::npos);
   EXPECT_EQ(process.standard_output(), "");
+}
+
+/// The constants are those of solver/README.md.
+TEST(InfSupCommand, TellsTheConstantOfTheProblemsOwnMeshAndScheme) {
+  json problem = paper_problem(4);
+  for (const auto& [scheme, constant] :
+       std::vector<std::pair<std::string, double>>{{"conforming", 0.9318}, {"nonconforming", 0.9243}}) {
+    problem["scheme"] = scheme;
+    ChildProcess document({"inf-sup", "--format", "json", "-"}, problem.dump());
+    EXPECT_EQ(document.wait(60s), 0) << document.standard_error();
+    const json found = json::parse(document.standard_output());
+    EXPECT_NEAR(found.at("inf_sup").get<double>(), constant, 5e-5);
+    EXPECT_EQ(found.at("scheme"), scheme);
+    EXPECT_EQ(found.at("triangles"), 32);
+    EXPECT_EQ(found.at("unknowns").at("stress"), scheme == "conforming" ? 176 : 56);
+    ChildProcess table({"inf-sup", "-"}, problem.dump());
+    EXPECT_EQ(table.wait(60s), 0) << table.standard_error();
+    EXPECT_TRUE(
+        table.standard_output().starts_with("inf-sup constant  " + std::to_string(constant).substr(0, 5)))
+        << table.standard_output();
+  }
+}
+
+TEST(InfSupCommand, RefusesWhatHasNoSuchConstant) {
+  json adaptive = paper_problem(4), fine = paper_problem(400), misspelt = paper_problem(4);
+  adaptive["mesh"]["adaptive"] = {{"tolerance", 0.1}};
+  adaptive["solver"] = {{"method", "active_set"}};
+  misspelt["sheme"] = "conforming";
+  for (const auto& [problem, pointer] : std::vector<std::pair<json, std::string>>{
+           {adaptive, "/mesh/adaptive"}, {fine, "/mesh"}, {misspelt, "/sheme"}}) {
+    ChildProcess process({"inf-sup", "-"}, problem.dump());
+    EXPECT_EQ(process.wait(60s), 2) << pointer;
+    EXPECT_EQ(process.standard_output(), "");
+    EXPECT_EQ(json::parse(process.standard_error()).at("errors").at(0).at("pointer"), pointer);
+  }
+}
+
+TEST(InfSupCommand, EndsWhereItsTimeIsUp) {
+  json problem = paper_problem(150);
+  problem["solver"]["time_limit"] = 0.05;
+  ChildProcess process({"inf-sup", "-"}, problem.dump());
+  EXPECT_EQ(process.wait(10 * soon), 1);
+  EXPECT_NE(process.standard_error().find("time limit"), std::string::npos) << process.standard_error();
 }
 
 TEST(SolveCommand, EndsOnCtrlC) {

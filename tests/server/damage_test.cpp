@@ -9,8 +9,9 @@
 #include <sstream>
 #include <thread>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
-#include "long_tests.hpp"
 #include "server/jobs/database.hpp"
 #include "server/jobs/repair.hpp"
 #include "server/jobs/schema.hpp"

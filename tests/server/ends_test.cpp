@@ -13,9 +13,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "api/examples.hpp"
 #include "child_process.hpp"
-#include "long_tests.hpp"
 #include "server/jobs/memory_store.hpp"
 #include "server/signals.hpp"
 #include "store_jobs.hpp"

@@ -7,9 +7,10 @@
 
 #include <unistd.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "api/document/gzip.hpp"
 #include "child_process.hpp"
-#include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 #include "reply_reader.hpp"

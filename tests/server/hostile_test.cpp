@@ -14,10 +14,11 @@
 #include <unistd.h>
 
 #include "../problems/json_problems.hpp"
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "api/document/gzip.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
-#include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 

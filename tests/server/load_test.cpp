@@ -8,9 +8,10 @@
 #include <regex>
 #include <thread>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
-#include "long_tests.hpp"
 #include "process_figures.hpp"
 
 namespace signorini::server::load_test {

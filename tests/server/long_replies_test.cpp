@@ -10,9 +10,10 @@
 
 #include <sys/socket.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
-#include "long_tests.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 #include "server/handlers/shared_results.hpp"

@@ -26,7 +26,7 @@ std::string write_tokens(const std::string& file) {
                       << "bert read,solve " << bert << "\n\n"
                       << "chief admin " << chief << "\r\n"
                       << "viewer read " << viewer << "\n"
-                      << "slow read " << slow << " rate=2\n"
+                      << "slow read,solve " << slow << " rate=2 memory=1mb\n"
                       << bare << "\n";
   return file;
 }
@@ -199,6 +199,19 @@ TEST_P(Owners, AskAsOftenAsTheirNameMay) {
   EXPECT_GE(count[200], 2);
   EXPECT_GE(count[429], 1);
   EXPECT_EQ(get(bert, "/v1/solves")->status, 200);
+}
+
+/// Nobody waits for what can never be.
+TEST_P(Owners, ArePromisedNoMemoryThatTheyDoNotHave) {
+  json problem = json::parse(problem_titled("instant"));
+  problem["mesh"] = {{"divisions", {16, 16}}};
+  for (const char* path : {"/v1/solves", "/v1/validate"}) {
+    const json refusal =
+        expect_problem(client_->Post(path, as(slow), problem.dump(), "application/json"), 413);
+    EXPECT_EQ(refusal.at("type"), "urn:signorini:problem:too-much-memory");
+    EXPECT_NE(refusal.value("detail", "").find("0.00105 GB to the solves of `slow`"), std::string::npos)
+        << refusal;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Stores, Owners, testing::Bool());

@@ -7,7 +7,7 @@
 #include <regex>
 #include <thread>
 
-#include "long_tests.hpp"
+#include "../problems/long_tests.hpp"
 #include "postgres_server.hpp"
 #include "replica.hpp"
 #include "server/jobs/postgres/store.hpp"

@@ -10,9 +10,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "becomes.hpp"
 #include "example_problems.hpp"
-#include "long_tests.hpp"
 #include "postgres_server.hpp"
 #include "replica.hpp"
 #include "server/jobs/postgres/store.hpp"

@@ -8,6 +8,7 @@
 namespace signorini::server::solves_test {
 namespace {
 
+using namespace std::chrono_literals;
 using nlohmann::json;
 
 class Solves : public ServiceTest {};
@@ -218,6 +219,35 @@ TEST_F(Solves, AreLeftByADeleteWhoseConditionDoesNotHold) {
   expect_problem(client_.Delete("/v1/solves/0", {{"If-Match", "\"x\""}}), 404);
   EXPECT_EQ(client_.Delete(ended, {{"If-Match", "*"}})->status, 204);
   EXPECT_EQ(client_.Delete(running, {{"If-Match", "*"}})->status, 202);
+}
+
+/// RFC 9110, 13.2.1: whatever is asked for, and done with it.
+TEST_F(Solves, AreAnsweredUnderTheConditionsOfTheRequest) {
+  const std::string own = "/v1/solves/" + std::string(json::parse(post("instant", "?wait=5")->body).at("id"));
+  const httplib::Headers other{{"If-Match", "\"x\""}}, missing{{"If-None-Match", "*"}},
+      any{{"If-Match", "*"}}, none{{"If-None-Match", "\"x\""}};
+  for (const std::string& path :
+       {own, own + "/result", own + "/events", std::string("/v1/solves"), std::string("/openapi.json")}) {
+    expect_problem(client_.Get(path, other), 412);
+    std::vector<RawClient> known;
+    known.emplace_back(service_.port());
+    known[0].send("GET " + path +
+                  " HTTP/1.1\r\nHost: localhost\r\nIf-None-Match: *\r\nConnection: close\r\n\r\n");
+    EXPECT_TRUE(listen_until(known, 20s, [&] { return known[0].closed(); })) << path;
+    EXPECT_EQ(known[0].status(), 304) << path;
+    EXPECT_EQ(known[0].heard().find("\r\n\r\n") + 4, known[0].heard().size()) << "a 304 has no body";
+    EXPECT_EQ(client_.Get(path, any)->status, 200) << path;
+    EXPECT_EQ(client_.Get(path, none)->status, 200) << path;
+  }
+  for (const httplib::Headers& condition : {other, missing}) {
+    expect_problem(client_.Get("/v1/solves/0", condition), 404);
+    expect_problem(client_.Delete("/v1/solves/0", condition), 404);
+    expect_problem(client_.Delete(own, condition), 412);
+    expect_problem(client_.Delete("/v1/solves?tag=none&confirm=0", condition), 412);
+    expect_problem(client_.Post("/v1/solves", condition, problem_titled("instant"), "application/json"), 412);
+    expect_problem(client_.Post("/v1/batches", condition, "[]", "application/json"), 412);
+  }
+  EXPECT_EQ(json::parse(get("/v1/solves")->body).at("solves").size(), 1u);
 }
 
 TEST_F(Solves, AreRefusedWhenTheQueueIsFull) {

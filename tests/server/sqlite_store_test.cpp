@@ -8,9 +8,10 @@
 #include <fstream>
 #include <thread>
 
+#include "../problems/long_tests.hpp"
+#include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "faulty_disk.hpp"
-#include "long_tests.hpp"
 #include "server/jobs/schema.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "store_jobs.hpp"

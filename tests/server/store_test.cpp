@@ -243,13 +243,41 @@ TEST_P(Store, ListsNewestFirstInPages) {
   query.limit = 2;
   JobPage page = store.list(query);
   EXPECT_EQ(ids(page), (std::vector<std::string>{"d", "c"}));
-  EXPECT_TRUE(page.more);
+  EXPECT_EQ(page.next, "c");
   query.after = "c";
   page = store.list(query);
   EXPECT_EQ(ids(page), (std::vector<std::string>{"b", "a"}));
-  EXPECT_FALSE(page.more);
+  EXPECT_EQ(page.next, std::nullopt);
   query.status = JobStatus::queued;
   EXPECT_EQ(ids(store.list(query)), (std::vector<std::string>{"b"}));
+}
+
+/// However few are found, and however many others there are.
+TEST_P(Store, ReadsNotAllTitlesForOnePage) {
+  JobStore& store = open(30'000);
+  const auto id = [](std::size_t number) { return std::to_string(100'000 + number); };
+  NewJob oldest = new_job(id(0));
+  oldest.title = "the seal";
+  store.add(oldest);
+  for (std::size_t added = 0; added < titles_of_a_page; added += 1000) {
+    NewBatch batch;
+    batch.batch.id = "batch " + id(added);
+    for (std::size_t i = 1; i <= 1000; ++i) {
+      batch.jobs.push_back(new_job(id(added + i)));
+      batch.jobs.back().batch = batch.batch.id;
+      batch.batch.jobs.push_back(batch.jobs.back().id);
+    }
+    store.add(batch);
+  }
+  ListQuery query{.title = "seal"};
+  const JobPage first = store.list(query);
+  EXPECT_TRUE(first.jobs.empty());
+  EXPECT_EQ(first.next, id(1));
+  query.after = first.next;
+  const JobPage last = store.list(query);
+  EXPECT_EQ(ids(last), std::vector<std::string>{id(0)});
+  EXPECT_EQ(last.next, std::nullopt);
+  EXPECT_EQ(store.ids({.title = "seal"}), std::vector<std::string>{id(0)});
 }
 
 TEST_P(Store, FindsJobsByTagAndTitle) {
@@ -275,8 +303,8 @@ TEST_P(Store, FindsJobsByTagAndTitle) {
     std::vector<std::string> all;
     for (JobPage page = store.list(by_ones); !page.jobs.empty(); page = store.list(by_ones)) {
       all.push_back(page.jobs.front().id);
-      by_ones.after = all.back();
-      if (!page.more) break;
+      by_ones.after = page.next;
+      if (!page.next) break;
     }
     EXPECT_EQ(ids(store.list(query)), all);
     EXPECT_EQ(store.ids(query), all);

@@ -84,9 +84,20 @@ class Terminal(unittest.TestCase):
         self.assertEqual(numbers, sorted(numbers))
         # The failure is told behind it, on a line of its own.
         last = shown.rsplit("\r\x1b[K", 1)[1]
-        self.assertEqual(json.loads(last)["type"], "urn:signorini:problem:not-converged")
+        self.assertRegex(last, r"^The method did not converge: the time limit .*\n$")
         for quiet in ({"terminals": ("stdout",)}, {"term": "dumb"}):
             self.assertNotIn("\x1b", solve(problem=slow, **quiet)[2])
+
+    def test_faults_are_read_there_and_documents_elsewhere(self):
+        bad = example("elastic-block")
+        bad["mesh"], bad["boundary"]["\x1b[31m"] = {"divisions": [0, 4]}, {"type": "fixed"}
+        code, _, told = solve(problem=bad)
+        self.assertEqual(code, 2)
+        self.assertNotIn("{", told)
+        self.assertNotIn("\x1b", told)
+        self.assertRegex(told, r"\n  /mesh/divisions\S* \S")
+        _, _, document = solve(problem=bad, terminals=("stdout",))
+        self.assertIn("/mesh/divisions", {fault["pointer"][:15] for fault in json.loads(document)["errors"]})
 
     def test_each_level_stays_in_a_line(self):
         code, table, shown = solve(problem=example("adaptive-mesh"))

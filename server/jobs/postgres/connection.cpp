@@ -71,7 +71,8 @@ Connection::Connection(const std::string& url, std::chrono::seconds patience)
   if (PQstatus(connection_.get()) != CONNECTION_OK) lose(first_line(PQerrorMessage(connection_.get())));
   PQsetnonblocking(connection_.get(), 1);
   // Whoever is stopped within a step holds nobody up for longer than that.
-  script("SET statement_timeout = '20s'; SET idle_in_transaction_session_timeout = '10s'");
+  script("SET statement_timeout = '" + std::to_string(longest_statement.count()) +
+         "s'; SET idle_in_transaction_session_timeout = '10s'");
 }
 
 Rows Connection::run(const std::string& sql, const Values& values) {

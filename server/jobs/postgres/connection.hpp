@@ -16,6 +16,9 @@
 
 namespace signorini::server::postgres {
 
+/// What a statement may take in the database, where it does not say otherwise.
+constexpr std::chrono::seconds longest_statement{10};
+
 /// What the database, or the way to it, says went wrong.
 class Error : public std::runtime_error {
  public:

@@ -6,8 +6,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr auto patience = 30s;
-constexpr auto between_tries = 500ms;  // to reach a database that could not be reached
+constexpr auto patience = longest_statement + 2s;  // with a database that does not answer
+constexpr auto between_tries = 500ms;              // to reach a database that could not be reached
 
 }  // namespace
 

@@ -16,17 +16,6 @@ namespace {
 
 constexpr int attempts_allowed = 3;
 
-Ending attempts_used_up() {
-  Ending ending;
-  ending.error = ProblemDetails{
-      "attempts-used-up", "Services died while they solved the problem",
-      std::to_string(attempts_allowed) +
-          " died or lost the database while this solve ran, and none tries it again. Most often a machine "
-          "has too "
-          "little memory for it (POST /v1/validate estimates it): take a coarser mesh or fewer workers."};
-  return ending;
-}
-
 std::string hexadecimal(const std::string& bytes) {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string text = "\\x";
@@ -55,25 +44,45 @@ void append_piece(const std::vector<Iteration>& piece, std::int64_t first, std::
 
 }  // namespace
 
+Ending attempts_used_up() {
+  Ending ending;
+  ending.error = ProblemDetails{
+      "attempts-used-up", "Services died while they solved the problem",
+      std::to_string(attempts_allowed) +
+          " died or lost the database while this solve ran, and none tries it again. Most often a machine "
+          "has too "
+          "little memory for it (POST /v1/validate estimates it): take a coarser mesh or fewer workers."};
+  return ending;
+}
+
 std::optional<Claim> Leases::claim(const Wish& wish) {
   static const std::string fits = "memory <= $2 AND " + within_share;
   // Who comes at the same time takes the next one. One statement, so that nobody can be stopped within it.
   static const std::string sql =
-      "WITH first AS (SELECT job, turn FROM queue WHERE job = coalesce("
-      "(SELECT job FROM queue WHERE mark = ANY($3::bigint[]) AND mark <> 0 AND turn < " +
+      // One whose operator is at hand, unless another of its owner is more urgent.
+      "WITH near AS (SELECT job, turn FROM queue WHERE mark = ANY($3::bigint[]) AND mark <> 0 AND turn < " +
       turn_now + " + $5::float8 AND " + fits +
-      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), "
-      "(SELECT job FROM queue WHERE " +
+      " AND NOT EXISTS (SELECT FROM queue AS other WHERE other.owner = queue.owner AND other.priority > "
+      "queue.priority) ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), "
+      // Else whose turn it is, and the most urgent one of that owner.
+      "head AS (SELECT job, turn, owner FROM queue WHERE NOT EXISTS (SELECT FROM near) AND " +
       fits +
-      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED))), "
+      " ORDER BY turn, job LIMIT 1 FOR UPDATE SKIP LOCKED), "
+      "best AS (SELECT job, turn FROM queue WHERE owner = (SELECT owner FROM head) AND " +
+      fits +
+      " ORDER BY priority DESC, job LIMIT 1 FOR UPDATE SKIP LOCKED), "
+      "first AS (SELECT job, turn FROM near UNION ALL SELECT best.job, head.turn FROM best, head), "
       // Else what is large would wait for as long as there is anything small.
       "next AS (DELETE FROM queue USING first WHERE queue.job = first.job AND NOT EXISTS "
       "(SELECT FROM queue WHERE turn < first.turn - $5::float8 AND memory > $2 AND memory <= $4::float8 "
       "AND " +
       within_share +
-      ") RETURNING queue.job), "
-      "claimed AS (UPDATE jobs SET status = 'running', started = clock_ms(), attempt = attempt + 1 FROM next "
-      "WHERE id = next.job RETURNING " +
+      ") RETURNING queue.job, first.turn), "
+      // Whose turn was taken has that of the one who took it.
+      "changed AS (UPDATE queue SET turn = best.turn FROM head, best, next WHERE queue.job = head.job AND "
+      "head.job <> best.job), "
+      "claimed AS (UPDATE jobs SET status = 'running', started = clock_ms(), attempt = attempt + 1, "
+      "turn = next.turn FROM next WHERE id = next.job RETURNING " +
       job_columns +
       ", attempt, memory, share), "
       "lease AS (INSERT INTO leases (job, attempt, until, owner, memory) "
@@ -119,8 +128,9 @@ bool Leases::give_back(Connection& connection, const Claim& claim) {
       "WITH held AS (DELETE FROM leases WHERE job = $1 AND attempt = $2 AND NOT cancel_asked RETURNING job), "
       "pieces AS (DELETE FROM results USING held WHERE results.job = held.job), "
       "again AS (UPDATE jobs SET status = 'queued', started = NULL, given_back = given_back + 1 FROM held "
-      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share, mark) "
-      "INSERT INTO queue SELECT * FROM again RETURNING job";
+      "WHERE id = held.job RETURNING id, turn, owner, batch, memory, share, mark, priority) "
+      "INSERT INTO queue (job, turn, owner, batch, memory, share, mark, priority) SELECT * FROM again "
+      "RETURNING job";
   return !connection.run(sql, Values(claim.job.id, claim.attempt)).empty();
 }
 
@@ -205,9 +215,8 @@ void Leases::rescue() {
       "finished = CASE judged.verdict WHEN 'queued' THEN NULL ELSE clock_ms() END, "
       "verdict = CASE judged.verdict WHEN 'queued' THEN NULL WHEN 'failed' THEN $4::bytea ELSE $3::bytea END "
       "FROM judged WHERE jobs.id = judged.id RETURNING jobs.*), "
-      "again AS (INSERT INTO queue SELECT id, turn, owner, batch, memory, share, mark FROM moved WHERE "
-      "status = "
-      "'queued') "
+      "again AS (INSERT INTO queue (job, turn, owner, batch, memory, share, mark, priority) "
+      "SELECT id, turn, owner, batch, memory, share, mark, priority FROM moved WHERE status = 'queued') "
       "SELECT id, status FROM moved";
   const Values values(lease_.count(), attempts_allowed, Bytes{cancelled}, Bytes{used_up});
   const Rows rows = with_heart([&](Connection& connection) { return connection.run(sql, values); });

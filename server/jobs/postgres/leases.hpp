@@ -8,6 +8,12 @@
 
 namespace signorini::server::postgres {
 
+/// Of entries of a sweep: before whatever else their owner has queued.
+constexpr int priority_of_chunks = 100;
+
+/// Of a job with which too many services died.
+Ending attempts_used_up();
+
 /// The fleet of those who use a database: who runs which job, and how far he is.
 class Leases : public Fleet {
  public:
@@ -18,6 +24,10 @@ class Leases : public Fleet {
   std::vector<Standing> renew(std::span<const Heartbeat> heartbeats) override;
   void rescue() override;
   std::vector<Found> look(std::span<const Sought> sought) const override;
+  bool split(const Claim& whole, std::span<const NewChunk> chunks) override;
+  std::vector<ChunkStanding> chunks(const std::string& whole) const override;
+  std::optional<Claim> claim_chunk(const std::string& whole) override;
+  std::vector<SweepEntry> entries(const std::string& chunk) const override;
   void hint() override;
   bool wait_for_hint(std::chrono::milliseconds time) override;
   std::uint64_t stale_writes() const override { return stale_writes_; }

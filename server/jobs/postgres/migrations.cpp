@@ -165,6 +165,49 @@ CREATE TABLE retention_clock (
   hold_until bigint NOT NULL                -- before that nothing is dropped by age
 ) WITH (fillfactor = 10, autovacuum_vacuum_scale_factor = 0, autovacuum_vacuum_threshold = 2000);
 INSERT INTO retention_clock VALUES (clock_ms(), 0);
+)sql",
+                           // Priorities within an owner, and entries of a sweep that are a job of their own.
+                           R"sql(
+ALTER TABLE jobs ADD COLUMN priority smallint NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN step double precision NOT NULL DEFAULT 1;  -- turns that it takes
+ALTER TABLE jobs ADD COLUMN chunks integer NOT NULL DEFAULT 0;         -- that its sweep was split into
+-- The job whose entries these are; whoever lists jobs does not see them.
+ALTER TABLE jobs ADD COLUMN whole text COLLATE "C" REFERENCES jobs ON DELETE CASCADE;
+ALTER TABLE jobs ADD COLUMN first_entry integer, ADD COLUMN entries integer;
+CREATE INDEX jobs_by_whole ON jobs (whole, first_entry) WHERE whole IS NOT NULL;
+
+ALTER TABLE queue ADD COLUMN priority smallint NOT NULL DEFAULT 0;
+CREATE INDEX queue_by_priority ON queue (owner, priority DESC, job);
+
+CREATE OR REPLACE FUNCTION tally() RETURNS trigger LANGUAGE plpgsql AS $$
+DECLARE
+  was text := coalesce(OLD.status, '');
+  is_now text := coalesce(NEW.status, '');
+BEGIN
+  IF coalesce(NEW.whole, OLD.whole) IS NOT NULL THEN RETURN NULL; END IF;
+  UPDATE tallies SET
+    queued = queued + (is_now = 'queued')::int - (was = 'queued')::int,
+    running = running + (is_now = 'running')::int - (was = 'running')::int,
+    succeeded = succeeded + (is_now = 'succeeded')::int - (was = 'succeeded')::int,
+    failed = failed + (is_now = 'failed')::int - (was = 'failed')::int,
+    cancelled = cancelled + (is_now = 'cancelled')::int - (was = 'cancelled')::int,
+    ended_bytes = ended_bytes + CASE WHEN NEW.finished IS NULL THEN 0 ELSE NEW.bytes END
+                              - CASE WHEN OLD.finished IS NULL THEN 0 ELSE OLD.bytes END,
+    damaged = damaged + coalesce(NEW.damaged, false)::int - coalesce(OLD.damaged, false)::int
+  WHERE shard = pg_backend_pid() % 32;
+  RETURN NULL;
+END $$;
+
+-- However the whole ends, and whoever ends it.
+CREATE FUNCTION drop_chunks() RETURNS trigger LANGUAGE plpgsql AS $$
+BEGIN
+  DELETE FROM queue USING jobs WHERE queue.job = jobs.id AND jobs.whole = NEW.id;
+  DELETE FROM leases USING jobs WHERE leases.job = jobs.id AND jobs.whole = NEW.id;
+  DELETE FROM jobs WHERE whole = NEW.id;
+  RETURN NULL;
+END $$;
+CREATE TRIGGER whole_ended AFTER UPDATE OF finished ON jobs FOR EACH ROW
+  WHEN (NEW.chunks > 0 AND NEW.finished IS NOT NULL) EXECUTE FUNCTION drop_chunks();
 )sql"};
 
 int version_of(Connection& connection) {

@@ -8,7 +8,8 @@
 namespace signorini::server::postgres {
 
 const std::string job_columns =
-    "id, status, title, created, started, finished, verdict, trace, owner, tags, batch";
+    "id, status, title, created, started, finished, verdict, trace, owner, tags, batch, whole, first_entry, "
+    "entries";
 
 std::optional<Time> time_of(const Rows& rows, int row, int column) {
   if (rows.is_null(row, column)) return std::nullopt;
@@ -26,6 +27,9 @@ Job job_of(const Rows& rows, int row) {
   job.finished = time_of(rows, row, 5);
   job.trace = rows.text(row, 7);
   job.batch = rows.text(row, 10);
+  if (!rows.is_null(row, 11))
+    job.chunk = {rows.text(row, 11), static_cast<std::size_t>(rows.integer(row, 12)),
+                 static_cast<std::size_t>(rows.integer(row, 13))};
   try {
     job.tags = unpack_list(rows.text(row, 9));
     if (!rows.is_null(row, 6)) job.verdict = unpack_verdict(rows.text(row, 6));

@@ -9,7 +9,7 @@ namespace signorini::server::postgres {
 
 /// The columns that job_of() reads.
 extern const std::string job_columns;
-constexpr int job_column_count = 11;
+constexpr int job_column_count = 14;
 
 /// One whose row cannot be read is `failed`, and says so.
 Job job_of(const Rows& rows, int row);

@@ -43,12 +43,13 @@ std::string without_zeros(std::string title) {
 void insert(Connection& connection, const NewJob& job, const std::string& packed) {
   static const std::string sql =
       "WITH new AS (INSERT INTO jobs (id, status, title, tags, owner, batch, trace, created, memory, share, "
-      "bytes, mark, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12::float8 + "
+      "bytes, mark, step, turn) VALUES ($1, 'queued', $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12::float8, "
+      "$12::float8 + "
       "greatest(" +
       turn_now +
       ", (SELECT max(turn) FROM queue WHERE owner = $4))) "
       "RETURNING id, turn, owner, batch, memory, share, mark), "
-      "waiting AS (INSERT INTO queue SELECT * FROM new) "
+      "waiting AS (INSERT INTO queue (job, turn, owner, batch, memory, share, mark) SELECT * FROM new) "
       "INSERT INTO problems SELECT id, $13::bytea FROM new";
   connection.run(sql, Values(job.id, without_zeros(job.title), pack_list(job.tags), job.owner, job.batch,
                              job.trace, to_milliseconds(job.created), job.predicted_memory, job.share.memory,
@@ -130,13 +131,16 @@ void Store::require_places(Connection& connection, std::size_t jobs, const std::
   // once.
   const Rows full = connection.run(
       "SELECT 1 WHERE (SELECT sum(queued) FROM tallies) >= $1::bigint AND (SELECT count(*) FROM "
-      "(SELECT DISTINCT CASE batch WHEN '' THEN job ELSE batch END FROM queue) AS requests) >= $1::bigint",
-      Values(limits_.queue));
+      "(SELECT DISTINCT CASE batch WHEN '' THEN job ELSE batch END FROM queue WHERE priority < $2::integer) "
+      "AS requests) >= $1::bigint",
+      Values(limits_.queue, priority_of_chunks));
   if (!full.empty()) throw QueueFull(limits_.queue);
   if (!share.queue) return;
   connection.lock("queue of " + owner);
-  const Rows beyond = connection.run("SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1",
-                                     Values(owner, jobs, *share.queue));
+  const Rows beyond = connection.run(
+      "SELECT count(*) + $2::bigint > $3::bigint FROM queue WHERE owner = $1 "
+      "AND priority < $4::integer",
+      Values(owner, jobs, *share.queue, priority_of_chunks));
   if (beyond.boolean(0, 0)) throw QueueFull(*share.queue, true);
 }
 
@@ -225,8 +229,10 @@ Cancellation Store::cancel(const std::string& id) {
     sweeper_.ended(static_cast<std::size_t>(waiting.integer(0, 0)));
     return Cancellation::ended;
   }
-  const Rows running =
-      database_.run("UPDATE leases SET cancel_asked = true WHERE job = $1 RETURNING job", Values(id));
+  const Rows running = database_.run(
+      "UPDATE leases SET cancel_asked = true WHERE job = ANY(ARRAY(SELECT $1 UNION ALL SELECT id FROM jobs "
+      "WHERE whole = $1)) RETURNING job",
+      Values(id));
   return running.empty() ? Cancellation::none : Cancellation::asked;
 }
 
@@ -249,25 +255,30 @@ void Store::tidy() {
 
 std::optional<Job> Store::find(const std::string& id) const {
   if (!may_be_an_id(id)) return std::nullopt;
-  const Rows rows = database_.run("SELECT " + job_columns + " FROM jobs WHERE id = $1", Values(id));
+  const Rows rows =
+      database_.run("SELECT " + job_columns + " FROM jobs WHERE id = $1 AND whole IS NULL", Values(id));
   if (rows.empty()) return std::nullopt;
   return job_of(rows, 0);
 }
 
 JobPage Store::list(const ListQuery& asked) const {
   const ListQuery query = with_title_in_lower_case(asked);
-  const Selection selected = selection(job_columns, query, query.limit + 1);
+  std::optional<std::string> read_to;
+  if (query.title) {
+    const Selection last = oldest_read(query);
+    const Rows rows = database_.run(last.sql, last.values);
+    if (!rows.empty()) read_to = rows.text(0, 0);
+  }
+  const Selection selected = selection(job_columns, query, read_to.value_or(""), query.limit + 1);
   const Rows rows = database_.run(selected.sql, selected.values);
-  JobPage page;
-  for (int row = 0; row < rows.size(); ++row) page.jobs.push_back(job_of(rows, row));
-  page.more = page.jobs.size() > query.limit;
-  if (page.more) page.jobs.pop_back();
-  return page;
+  std::vector<Job> jobs;
+  for (int row = 0; row < rows.size(); ++row) jobs.push_back(job_of(rows, row));
+  return page_of(std::move(jobs), query.limit, read_to);
 }
 
 std::vector<std::string> Store::ids(const ListQuery& asked) const {
   const ListQuery query = with_title_in_lower_case(asked);
-  const Selection selected = selection("id", query, std::nullopt);
+  const Selection selected = selection("id", query, "", std::nullopt);
   const Rows rows = database_.run(selected.sql, selected.values);
   std::vector<std::string> ids;
   for (int row = 0; row < rows.size(); ++row) ids.push_back(rows.text(row, 0));
@@ -300,7 +311,7 @@ JobCounts Store::count_of_batch(const std::string& id) const {
 
 BatchEnds Store::ends_of_batch(const std::string& id, std::int64_t since) const {
   // One that ended earlier than another may be seen later: as late as a statement may take.
-  constexpr std::int64_t longest_statement = 20'000;
+  constexpr std::int64_t longest = std::chrono::milliseconds(longest_statement).count();
   const Rows rows = database_.run(
       "SELECT id, finished FROM jobs WHERE batch <> '' AND batch = $1 AND (finished IS NULL OR finished >= "
       "$2) "
@@ -314,7 +325,7 @@ BatchEnds Store::ends_of_batch(const std::string& id, std::int64_t since) const 
       break;
     }
     ends.jobs.push_back(rows.text(row, 0));
-    ends.latest = std::max(since, rows.integer(row, 1) - longest_statement);
+    ends.latest = std::max(since, rows.integer(row, 1) - longest);
   }
   // The clock may have been set back meanwhile.
   if (ends.all && since > 0) return ends_of_batch(id, 0);

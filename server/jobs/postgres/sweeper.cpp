@@ -48,7 +48,8 @@ void Sweeper::sweep() {
   static const std::string sql =
       "WITH oldest AS (SELECT id, finished, bytes, sum(bytes) OVER (ORDER BY finished, id) AS with_older, "
       "lead(id) OVER (ORDER BY finished, id) IS NULL AS is_last FROM "
-      "(SELECT id, finished, bytes FROM jobs WHERE finished IS NOT NULL ORDER BY finished, id LIMIT 101) AS "
+      "(SELECT id, finished, bytes FROM jobs WHERE finished IS NOT NULL AND whole IS NULL "
+      "ORDER BY finished, id LIMIT 101) AS "
       "ended), "
       "kept AS (SELECT sum(ended_bytes) AS bytes FROM tallies), "
       "gone AS (DELETE FROM jobs USING oldest, kept WHERE jobs.id = oldest.id AND "
