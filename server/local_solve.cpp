@@ -1,7 +1,10 @@
 #include "server/local_solve.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -53,8 +56,7 @@ class LocalObserver : public Observer {
 };
 
 /// Solves the problem and completes its series.
-Ending solved(const api::Request& request, Series* series) {
-  LocalObserver observer(estimate(request.problem).triangles, series);
+Ending solved(const api::Request& request, LocalObserver& observer, Series* series) {
   KeptOperators not_kept(0);
   Ending ending = ending_of(solve_request(request, observer, not_kept));
   if (series == nullptr) return ending;
@@ -64,18 +66,23 @@ Ending solved(const api::Request& request, Series* series) {
 }
 
 void report(const ProblemDetails& details, std::optional<int> status = std::nullopt) {
-  std::cerr << to_json(details, status) << std::endl;
+  std::cerr << (reports_to_terminal() ? to_text(details) : to_json(details, status)) << std::endl;
 }
 
 std::string read_all(std::istream& stream) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-bool write_to_stdout(const Ending& ending, const WriteEnding& write) {
-  const bool written = write(ending, [](std::string_view piece) {
+/// Complains if that cannot be.
+bool write_to_stdout(const std::function<bool(const api::Sink& sink)>& write) {
+  const bool is_taken = write([](std::string_view piece) {
     return std::fwrite(piece.data(), 1, piece.size(), stdout) == piece.size();
   });
-  return std::fflush(stdout) == 0 && written;
+  const bool written = std::fflush(stdout) == 0 && is_taken;
+  if (!written)
+    report({"unwritable-output", "The output cannot be written",
+            std::string("Standard output takes no more: ") + std::strerror(errno) + "."});
+  return written;
 }
 
 /// A fault of the data that only the real mesh shows is bad input too.
@@ -83,13 +90,28 @@ int exit_code_of(const Failure& failure) {
   return failure.details.kind == "invalid-problem" ? exit_bad_input : exit_failed;
 }
 
+/// What the work returns, or the exit code of what it throws, which goes to standard error.
+int reported(const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const BadInput&) {
+    throw;
+  } catch (...) {
+    const Failure failure = describe(std::current_exception());
+    report(failure.details, status_of(failure.details));
+    return exit_code_of(failure);
+  }
+}
+
 }  // namespace
 
 std::string read_input(const std::string& file) {
   if (file == "-") return read_all(std::cin);
   std::ifstream stream(file, std::ios::binary);
-  std::string text = read_all(stream);
-  if (!stream.is_open() || stream.bad())
+  std::error_code unknown;
+  const bool is_readable = stream.is_open() && !std::filesystem::is_directory(file, unknown);
+  std::string text = is_readable ? read_all(stream) : "";
+  if (!is_readable || stream.bad())
     throw BadInput{{"unreadable-file", "The file cannot be read", "Cannot read " + file + "."}};
   return text;
 }
@@ -104,18 +126,26 @@ api::Request parse_input(const std::string& text) {
 }
 
 int solve_and_write(const api::Request& request, const WriteEnding& write, Series* series) {
-  try {
-    const Ending ending = solved(request, series);
+  return reported([&] {
+    const Ending ending = [&] {
+      LocalObserver observer(estimate(request.problem).triangles, series);
+      return solved(request, observer, series);
+    }();
     if (ending.error) report(*ending.error);
-    const bool written = write_to_stdout(ending, write);
+    const bool written = write_to_stdout([&](const api::Sink& sink) { return write(ending, sink); });
     return written && ending.status == JobStatus::succeeded ? exit_done : exit_failed;
-  } catch (const BadInput&) {
-    throw;
-  } catch (...) {
-    const Failure failure = describe(std::current_exception());
-    report(failure.details, status_of(failure.details));
-    return exit_code_of(failure);
-  }
+  });
+}
+
+int find_and_write(std::int64_t triangles, const std::function<void(Observer&)>& find,
+                   const std::function<bool(const api::Sink& sink)>& write) {
+  return reported([&] {
+    {
+      LocalObserver observer(triangles, nullptr);
+      find(observer);
+    }
+    return write_to_stdout(write) ? exit_done : exit_failed;
+  });
 }
 
 int run_locally(const std::function<int()>& command) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -30,6 +31,10 @@ using WriteEnding = std::function<bool(const Ending& ending, const api::Sink& si
 /// problem+json to standard error, and if that is a terminal how far it is. Adds to the series if there is
 /// one. Returns the exit code.
 int solve_and_write(const api::Request& request, const WriteEnding& write, Series* series = nullptr);
+
+/// The same of what `find` finds without a Solution; `triangles`: of the mesh, about.
+int find_and_write(std::int64_t triangles, const std::function<void(Observer&)>& find,
+                   const std::function<bool(const api::Sink& sink)>& write);
 
 /// What the command returns, or the exit code for the BadInput that it throws, which goes to standard error.
 int run_locally(const std::function<int()>& command);

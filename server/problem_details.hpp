@@ -30,6 +30,10 @@ std::optional<int> status_of(const ProblemDetails& details);
 /// `count` and `errors` only where there are some.
 std::string to_json(const ProblemDetails& details, std::optional<int> status = std::nullopt);
 
+/// For a person: the title, then the detail or each fault in a line. What a terminal would take for a command
+/// is blank.
+std::string to_text(const ProblemDetails& details);
+
 /// The `error` of a job, with the status that belongs to it; empty if there is none.
 std::string error_to_json(const std::optional<ProblemDetails>& error);
 
