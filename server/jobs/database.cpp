@@ -40,9 +40,21 @@ std::optional<Time> time_of(const SQLite::Column& column) {
   return Time(std::chrono::milliseconds(column.getInt64()));
 }
 
-SQLite::Database connect(const std::filesystem::path& file, const std::string& vfs) {
-  SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms,
-                            vfs);
+Prepared::~Prepared() {
+  if (place_ == nullptr) return;
+  tryReset();
+  clearBindings();
+  place_->emplace(std::move(*this));
+}
+
+Prepared Database::prepare(const std::string& sql) const {
+  std::optional<SQLite::Statement>& place = idle_[sql];
+  std::optional<SQLite::Statement> idle = std::exchange(place, std::nullopt);
+  return {idle ? *std::move(idle) : SQLite::Statement(*this, sql), place};
+}
+
+Database connect(const std::filesystem::path& file, const std::string& vfs) {
+  Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms, vfs);
   // How room is given back is settled before the first page is written; later this would be a write.
   if (database.execAndGet("PRAGMA page_count").getInt() == 0)
     database.exec("PRAGMA auto_vacuum = INCREMENTAL");
@@ -56,8 +68,8 @@ SQLite::Database connect(const std::filesystem::path& file, const std::string& v
   return database;
 }
 
-SQLite::Database connect_to_read(const std::filesystem::path& file, const std::string& vfs) {
-  return SQLite::Database(file.string(), SQLite::OPEN_READWRITE, busy_timeout_ms, vfs);
+Database connect_to_read(const std::filesystem::path& file, const std::string& vfs) {
+  return Database(file.string(), SQLite::OPEN_READWRITE, busy_timeout_ms, vfs);
 }
 
 std::optional<std::string> passing_reason(const SQLite::Exception& error) {

@@ -79,7 +79,7 @@ std::optional<Batch> batch_of(const SQLite::Statement& row) try {
   return std::nullopt;
 }
 
-std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id) {
+std::shared_ptr<const std::string> problem_of(const Database& database, const std::string& id) {
   try {
     auto row = prepared(database, "SELECT text FROM problems WHERE job = ?", id);
     if (!row.executeStep()) return nullptr;
@@ -92,7 +92,7 @@ std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, 
   }
 }
 
-void fail_as_damaged(SQLite::Database& database, const std::string& id, const std::string& what,
+void fail_as_damaged(Database& database, const std::string& id, const std::string& what,
                      std::int64_t retention) {
   const std::int64_t now = to_milliseconds(std::chrono::system_clock::now());
   // What a row says that is not intact may be anything: a size that would push everything else out, an age.

@@ -30,11 +30,11 @@ extern const std::string batch_columns;
 std::optional<Batch> batch_of(const SQLite::Statement& row);
 
 /// The problem as it was sent; null if it is missing or damaged.
-std::shared_ptr<const std::string> problem_of(const SQLite::Database& database, const std::string& id);
+std::shared_ptr<const std::string> problem_of(const Database& database, const std::string& id);
 
 /// Within a transaction: makes a job `failed` because its `what` is damaged. It has ended at the time
 /// `retention` at the latest.
-void fail_as_damaged(SQLite::Database& database, const std::string& id, const std::string& what,
+void fail_as_damaged(Database& database, const std::string& id, const std::string& what,
                      std::int64_t retention);
 
 }  // namespace signorini::server

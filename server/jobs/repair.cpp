@@ -61,7 +61,7 @@ bool is_of_file(const SQLite::Exception& error, const path& file) {
 /// What is wrong with how the file hangs together; nothing if nothing is.
 std::optional<std::string> fault_of_file(const path& file, const std::string& vfs) {
   try {
-    SQLite::Database database = connect(file, vfs);
+    Database database = connect(file, vfs);
     SQLite::Statement check(database, "PRAGMA integrity_check(1)");
     check.executeStep();
     const std::string verdict = check.getColumn(0).getString();
@@ -96,7 +96,7 @@ std::size_t write_anew(const path& file, const std::string& fault, const std::st
   remove_with_log(fresh);
   std::size_t found = 0;
   try {
-    SQLite::Database whole = connect(fresh, vfs);
+    Database whole = connect(fresh, vfs);
     migrate(whole);
     found = salvage(file, whole);
   } catch (const SQLite::Exception& error) {
@@ -119,7 +119,7 @@ std::string brought_over(const path& file, const std::string& fault, std::size_t
 /// Looks at each row beside the others, and repairs it.
 class Rows {
  public:
-  explicit Rows(SQLite::Database& database) : database_(database) {}
+  explicit Rows(Database& database) : database_(database) {}
 
   std::vector<std::string> repair(Depth depth) {
     find_strays();
@@ -220,13 +220,13 @@ class Rows {
     damage_.push_back("the " + what + " of solve " + id + " is not what was written; it is failed now");
   }
 
-  SQLite::Database& database_;
+  Database& database_;
   const std::int64_t retention_ = RetentionClock().now();
   std::vector<std::string> damage_;
 };
 
 std::vector<std::string> repair_rows(const path& file, Depth depth, const std::string& vfs) {
-  SQLite::Database database = connect(file, vfs);
+  Database database = connect(file, vfs);
   migrate(database);
   seal_changes(database);
   SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);

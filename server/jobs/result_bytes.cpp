@@ -4,15 +4,13 @@
 
 #include <sqlite3.h>
 
-#include "server/jobs/database.hpp"
-
 namespace signorini::server {
 
 void ResultBytes::Close::operator()(sqlite3_blob* blob) const {
   sqlite3_blob_close(blob);
 }
 
-ResultBytes::ResultBytes(const SQLite::Database& database, const std::string& job) : database_(database) {
+ResultBytes::ResultBytes(const Database& database, const std::string& job) : database_(database) {
   auto row = prepared(database, "SELECT rowid, length(bytes) FROM results WHERE job = ? ORDER BY piece", job);
   while (row.executeStep()) {
     const auto size = static_cast<std::size_t>(row.getColumn(1).getInt64());

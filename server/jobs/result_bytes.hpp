@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <SQLiteCpp/SQLiteCpp.h>
+#include "server/jobs/database.hpp"
 
 struct sqlite3_blob;
 
@@ -17,7 +17,7 @@ namespace signorini::server {
 class ResultBytes {
  public:
   /// Throws SQLite::Exception.
-  ResultBytes(const SQLite::Database& database, const std::string& job);
+  ResultBytes(const Database& database, const std::string& job);
 
   /// How many there are; 0 if there is no result.
   std::size_t size() const { return size_; }
@@ -37,7 +37,7 @@ class ResultBytes {
 
   void open(const Piece& piece);
 
-  const SQLite::Database& database_;
+  const Database& database_;
   std::vector<Piece> pieces_;
   std::size_t size_ = 0;
   std::unique_ptr<sqlite3_blob, Close> opened_;

@@ -60,11 +60,11 @@ void give_room_back(SQLite::Database& database) {
 }
 
 /// What a killed service has left needs room to be opened.
-SQLite::Database open_jobs(const DataDir& directory, const std::string& vfs, DiskReserve& reserve) {
+Database open_jobs(const DataDir& directory, const std::string& vfs, DiskReserve& reserve) {
   if (!reserve.room()) reserve.spend();
   repair_if_damaged(directory, vfs);
   try {
-    SQLite::Database database = connect(directory.database(), vfs);
+    Database database = connect(directory.database(), vfs);
     migrate(database);
     give_room_back(database);
     seal_changes(database);
@@ -75,7 +75,7 @@ SQLite::Database open_jobs(const DataDir& directory, const std::string& vfs, Dis
   }
 }
 
-std::optional<KeptClock> kept_clock(const SQLite::Database& database) {
+std::optional<KeptClock> kept_clock(const Database& database) {
   auto row = prepared(database, "SELECT retention, wall FROM state");
   if (!row.executeStep()) return std::nullopt;
   return KeptClock{row.getColumn(0).getInt64(), row.getColumn(1).getInt64()};
@@ -99,7 +99,7 @@ std::string candidates(const ListQuery& query) {
 const std::string before_every_id, beyond_every_id = "~";
 
 /// The oldest job of which a page reads the title, if there may be older ones.
-std::optional<std::string> oldest_read(const SQLite::Database& database, const ListQuery& query) {
+std::optional<std::string> oldest_read(const Database& database, const ListQuery& query) {
   if (!query.title) return std::nullopt;
   auto row = prepared(
       database, "SELECT id FROM jobs INDEXED BY jobs_by_title WHERE id < ? ORDER BY id DESC LIMIT 1 OFFSET ?",
@@ -109,8 +109,8 @@ std::optional<std::string> oldest_read(const SQLite::Database& database, const L
 }
 
 /// The columns of all jobs that are asked for, newest first; none is older than the oldest.
-SQLite::Statement selection(const SQLite::Database& database, const std::string& columns,
-                            const ListQuery& query, const std::string& oldest, std::int64_t limit) {
+SQLite::Statement selection(const Database& database, const std::string& columns, const ListQuery& query,
+                            const std::string& oldest, std::int64_t limit) {
   const std::string first = candidates(query);
   std::string sql = "SELECT " + columns + " FROM ";
   sql += first.empty() ? "jobs" : "(" + first + ") CROSS JOIN jobs ON id = candidate";
@@ -257,7 +257,7 @@ Batch SqliteStore::add(NewBatch batch) {
 
 /// Within a step: throws QueueFull if no request more may wait, or not so many jobs of the owner.
 void SqliteStore::require_places(std::size_t jobs, const std::string& owner, const Share& share) {
-  const auto count = [](SQLite::Statement row) {
+  const auto count = [](Prepared row) {
     row.executeStep();
     return static_cast<std::size_t>(row.getColumn(0).getInt64());
   };
@@ -287,8 +287,8 @@ std::optional<std::string> SqliteStore::earlier(const std::string& owner, const 
   return read([&] { return job_with_key(reader_, owner, key, problem); });
 }
 
-std::optional<std::string> SqliteStore::job_with_key(const SQLite::Database& database,
-                                                     const std::string& owner, const std::string& key,
+std::optional<std::string> SqliteStore::job_with_key(const Database& database, const std::string& owner,
+                                                     const std::string& key,
                                                      const std::string& problem) const {
   auto batch = prepared(database, "SELECT id FROM batches WHERE owner = ? AND key = ?", owner, key);
   if (batch.executeStep()) throw KeyReused(batch.getColumn(0).getString(), true);
@@ -305,7 +305,7 @@ std::optional<Batch> SqliteStore::earlier_batch(const std::string& owner, const 
   return read([&] { return batch_with_key(reader_, owner, key, digest); });
 }
 
-std::optional<Batch> SqliteStore::batch_with_key(const SQLite::Database& database, const std::string& owner,
+std::optional<Batch> SqliteStore::batch_with_key(const Database& database, const std::string& owner,
                                                  const std::string& key, const std::string& digest) const {
   auto job = prepared(database, "SELECT job FROM idempotency_keys WHERE owner = ? AND key = ?", owner, key);
   if (job.executeStep()) throw KeyReused(job.getColumn(0).getString());
@@ -347,10 +347,7 @@ std::optional<Claim> SqliteStore::claim() {
 bool SqliteStore::finish(const Claim& claim, const Ending& ending) {
   const std::string findings = pack_findings(ending);
   require_growth(findings.size());
-  return write([&] {
-    return end(claim.job.id, "status = 'running' AND attempt = " + std::to_string(claim.attempt), ending,
-               findings);
-  });
+  return write([&] { return end(claim.job.id, JobStatus::running, claim.attempt, ending, findings); });
 }
 
 /// Throws StoreUnavailable if a result so long would leave too little of what files may grow by: where the
@@ -376,7 +373,7 @@ bool SqliteStore::give_back(const Claim& claim) {
 Cancellation SqliteStore::cancel(const std::string& id) {
   const Ending cancelled = cancelled_ending("The solve was cancelled before it began.");
   return write_what_frees([&] {
-    if (end(id, "status = 'queued'", cancelled, {})) return Cancellation::ended;
+    if (end(id, JobStatus::queued, std::nullopt, cancelled, {})) return Cancellation::ended;
     const bool runs =
         prepared(writer_, "UPDATE jobs SET cancel_asked = 1 WHERE id = ? AND status = 'running'", id)
             .exec() == 1;
@@ -401,9 +398,10 @@ std::size_t SqliteStore::remove_ended(std::span<const std::string> ids) {
   });
 }
 
-/// Within a step: ends the job if the condition on its row holds, and keeps what was found out.
-bool SqliteStore::end(const std::string& id, const std::string& condition, const Ending& ending,
-                      const std::string& findings) {
+/// Within a step: ends the job if it has this status, in this attempt if one is named, and keeps what was
+/// found out.
+bool SqliteStore::end(const std::string& id, JobStatus status, std::optional<std::uint64_t> attempt,
+                      const Ending& ending, const std::string& findings) {
   const std::string verdict = pack_verdict(verdict_of(ending));
   const KeptClock clock = clock_.reading();
   std::int64_t bytes = 0;
@@ -411,10 +409,12 @@ bool SqliteStore::end(const std::string& id, const std::string& condition, const
     auto row =
         prepared(writer_,
                  "UPDATE jobs SET status = ?, finished = ?, ended = ?, verdict = ?, bytes = bytes + ?, "
-                 "damaged = ? WHERE id = ? AND " +
-                     condition + " RETURNING bytes",
+                 "damaged = ? WHERE id = ? AND status = ? AND attempt = ifnull(?, attempt) RETURNING bytes",
                  std::string(name(ending.status)), clock.wall, clock.retention, Blob{verdict},
-                 static_cast<std::int64_t>(findings.size()), static_cast<int>(is_damaged(ending)), id);
+                 static_cast<std::int64_t>(findings.size()), static_cast<int>(is_damaged(ending)), id,
+                 std::string(name(status)));
+    constexpr int of_attempt = 9;
+    if (attempt) row.bind(of_attempt, static_cast<std::int64_t>(*attempt));
     if (!row.executeStep()) return false;
     bytes = row.getColumn(0).getInt64();
   }
@@ -468,16 +468,17 @@ void SqliteStore::drop_beyond_limits() {
 
 /// False if nothing is beyond the limits.
 bool SqliteStore::drop_oldest_beyond_limits(bool by_age) {
-  const std::int64_t kept_bytes = writer_.execAndGet("SELECT ended_bytes FROM state").getInt64();
   const std::int64_t oldest =
       clock_.now() - std::chrono::duration_cast<std::chrono::milliseconds>(limits_.keep).count();
   auto row = prepared(writer_, "SELECT id, ended, bytes, " + is_intact +
-                                   " FROM jobs WHERE ended IS NOT NULL ORDER BY ended, id LIMIT 2");
+                                   ", (SELECT ended_bytes FROM state) FROM jobs WHERE ended IS NOT NULL "
+                                   "ORDER BY ended, id LIMIT 2");
   if (!row.executeStep()) return false;
   const std::string id = row.getColumn(0).getString();
   const bool expired = by_age && row.getColumn(1).getInt64() < oldest;
   const std::int64_t bytes = row.getColumn(2).getInt64();
   const bool intact = row.getColumn(3).getInt() != 0;
+  const std::int64_t kept_bytes = row.getColumn(4).getInt64();
   const bool last = !row.executeStep();
   if (!expired && (last || kept_bytes <= static_cast<std::int64_t>(limits_.keep_bytes))) return false;
   row.reset();
@@ -535,7 +536,7 @@ void SqliteStore::recover() {
       }
     }
     for (const auto& [id, ending] : over) {
-      end(id, "status = 'running'", ending, {});
+      end(id, JobStatus::running, std::nullopt, ending, {});
       const LogField job("job", id);
       spdlog::warn("{} kind={}", name(ending.status), ending.error->kind);
     }
@@ -623,7 +624,7 @@ std::optional<JobResult> SqliteStore::result(const std::string& id) {
   JobResult result;
   const char* damaged = nullptr;
   try {
-    SQLite::Database connection = connect_to_read(directory_.database(), vfs_);
+    Database connection = connect_to_read(directory_.database(), vfs_);
     // Both from one state of the database.
     const SQLite::Transaction transaction(connection);
     result.problem = problem_of(connection, id);

@@ -64,14 +64,14 @@ class SqliteStore : public JobStore {
   bool has_room();
   void require_room();
   void require_growth(std::size_t bytes) const;
-  std::optional<std::string> job_with_key(const SQLite::Database& database, const std::string& owner,
+  std::optional<std::string> job_with_key(const Database& database, const std::string& owner,
                                           const std::string& key, const std::string& problem) const;
-  std::optional<Batch> batch_with_key(const SQLite::Database& database, const std::string& owner,
+  std::optional<Batch> batch_with_key(const Database& database, const std::string& owner,
                                       const std::string& key, const std::string& digest) const;
   void require_places(std::size_t jobs, const std::string& owner, const Share& share);
   void insert(const NewJob& job, const std::string& packed_problem);
-  bool end(const std::string& id, const std::string& condition, const Ending& ending,
-           const std::string& findings);
+  bool end(const std::string& id, JobStatus status, std::optional<std::uint64_t> attempt,
+           const Ending& ending, const std::string& findings);
   void drop_beyond_limits();
   bool drop_oldest_beyond_limits(bool by_age);
   void shrink();
@@ -87,12 +87,12 @@ class SqliteStore : public JobStore {
   mutable std::optional<std::string> damage_;   ///< of the database, which stays
   DiskReserve reserve_;
 
-  SQLite::Database writer_;
+  Database writer_;
   CommitQueue commits_{writer_};
   RetentionClock clock_;  ///< used within steps only
 
   mutable std::mutex reading_;
-  mutable SQLite::Database reader_;
+  mutable Database reader_;
 };
 
 }  // namespace signorini::server
