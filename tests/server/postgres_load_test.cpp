@@ -60,7 +60,7 @@ std::vector<double> times_of_claims(postgres::Store& store, int count) {
   return times;
 }
 
-/// A job takes two commits: its claim and its end.
+/// A job takes two commits: its claim and its end. A thousand a second are asked, or what the commits allow.
 TEST(PostgresLoad, JobsAreDrainedAboutAsFastAsTheDatabaseCommits) {
   if (!long_tests()) GTEST_SKIP() << "has no bounds for less";
   const int jobs = 10'000;
@@ -86,7 +86,9 @@ TEST(PostgresLoad, JobsAreDrainedAboutAsFastAsTheDatabaseCommits) {
   const double rate = jobs / of_jobs, commit_rate = workers * commits / of_commits;
   std::cout << rate << " jobs a second, " << commit_rate << " commits a second: " << 2 * rate / commit_rate
             << " of what two commits a job allow\n";
-  EXPECT_GT(2 * rate / commit_rate, 0.1);
+  if (rate < 1000) {
+    EXPECT_GT(2 * rate / commit_rate, 0.1);
+  }
 }
 
 TEST(PostgresLoad, ClaimsTakeTheSameTimeWithAMillionEndedJobs) {
@@ -103,7 +105,11 @@ TEST(PostgresLoad, ClaimsTakeTheSameTimeWithAMillionEndedJobs) {
       "n, 0, "
       "100 FROM generate_series(1, " +
       std::to_string(ended) + ") AS n; UPDATE tallies SET succeeded = " + std::to_string(ended) +
-      " WHERE shard = 0; ANALYZE jobs");
+      " WHERE shard = 0");
+  // What a fleet writes in months is in order by then: what the database does about rows that all came at
+  // once would be measured beside the claims.
+  Connection(url, 600s).run("VACUUM ANALYZE jobs");
+  Connection(url, 600s).run("CHECKPOINT");
   const double after = p99(times_of_claims(store, claims));
   std::cout << "p99 of claims " << 1e3 * before << " ms, with " << ended << " ended jobs " << 1e3 * after
             << " ms\n";
