@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 
 #include <cblas.h>
 
@@ -17,12 +16,7 @@ namespace {
 Eigen::MatrixXd lower_part(const Eigen::MatrixXd& matrix, const std::vector<int>& chosen,
                            Progress& progress) {
   const auto n = static_cast<Eigen::Index>(chosen.size());
-  Eigen::MatrixXd lower;
-  try {
-    lower.resize(n, n);
-  } catch (const std::bad_alloc&) {
-    throw OutOfMemory();
-  }
+  Eigen::MatrixXd lower = unset_square(n);
   Pace pace(progress);
   for (Eigen::Index j = 0; j < n; ++j) {
     pace.add(static_cast<std::size_t>(n - j));

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 
 #include <cblas.h>
 
 #include "progress/pace.hpp"
+#include "system/huge_pages.hpp"
 
 namespace signorini {
 
@@ -15,9 +17,22 @@ OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisat
 Numbers allocate_numbers(std::size_t count) {
   if (count > std::numeric_limits<std::size_t>::max() / sizeof(double)) throw OutOfMemory();
   // At least one, for malloc() may answer null if nothing is asked for.
-  void* const memory = std::malloc(std::max<std::size_t>(count, 1) * sizeof(double));
+  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(double);
+  void* const memory = std::malloc(bytes);
   if (memory == nullptr) throw OutOfMemory();
+  prefer_huge_pages(memory, bytes);
   return Numbers(static_cast<double*>(memory));
+}
+
+Eigen::MatrixXd unset_square(Eigen::Index size) {
+  Eigen::MatrixXd square;
+  try {
+    square.resize(size, size);
+  } catch (const std::bad_alloc&) {
+    throw OutOfMemory();
+  }
+  prefer_huge_pages(square.data(), static_cast<std::size_t>(square.size()) * sizeof(double));
+  return square;
 }
 
 void require_stiffness(std::span<const int> unknowns, int pivots, const double* columns,

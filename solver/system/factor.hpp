@@ -30,6 +30,8 @@ using Numbers = std::unique_ptr<double[], Free>;
 
 /// Throws OutOfMemory.
 Numbers allocate_numbers(std::size_t count);
+/// A matrix of which no number is set. Throws OutOfMemory.
+Eigen::MatrixXd unset_square(Eigen::Index size);
 
 /// The columns of a Cholesky factor in the order of the elimination, in dense panels: neighbouring columns
 /// with the same rows below their triangle.

@@ -59,7 +59,7 @@ class FrontElimination {
     const int n = front.rest();
     stack(whole).pop(rest_size(front));
     const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
-    Eigen::MatrixXd all(n, n);
+    Eigen::MatrixXd all = unset_square(n);
     for (int j = 0; j < n; ++j) {
       pace_.add(static_cast<std::size_t>(n - j));
       all.col(j).tail(n - j) = lower.col(j).tail(n - j);
