@@ -12,6 +12,22 @@ namespace {
 /// = 0.3 and 0.4999), for a multiple of the time.
 constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
 
+/// Makes it closer inside the body, and the pressure on Γ_C where that may move.
+void improve(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& clearance,
+             AdmissiblePair& pair, Progress& progress) {
+  if (discrete.spaces().components == 1) {
+    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
+    minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
+    pair.of_balance = stream_function_of_balance(discrete, progress);
+    return;
+  }
+  pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
+  if (discrete.spaces().order == 1)
+    minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
+  pair.tractions.emplace(discrete, solution.stress, pair.pressure);
+  relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, progress);
+}
+
 }  // namespace
 
 std::vector<std::string> AdmissiblePair::unmet() const {
@@ -25,17 +41,16 @@ AdmissiblePair admissible_pair(const Discretization& discrete, const Solution& s
   const Eigen::VectorXd clearance =
       discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()));
   AdmissiblePair pair{{discrete, solution, coupling, progress}, {discrete, solution.stress, clearance}};
-  if (discrete.spaces().components == 1) {
-    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
-    minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = stream_function_of_balance(discrete, progress);
-    return pair;
-  }
-  pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
-  if (discrete.spaces().order == 1)
-    minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
-  pair.tractions.emplace(discrete, solution.stress, pair.pressure);
-  relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, progress);
+  improve(discrete, solution, clearance, pair, progress);
+  return pair;
+}
+
+AdmissiblePair dual_pair(const Discretization& discrete, const Solution& solution,
+                         const Eigen::VectorXd& coupling, const AdmissiblePair& base, double factor,
+                         Progress& progress) {
+  AdmissiblePair pair{{discrete, solution, coupling, base.v, factor, progress},
+                      {discrete, solution.stress, base.pressure, factor}};
+  improve(discrete, solution, Eigen::VectorXd::Zero(discrete.clearance.rows.size()), pair, progress);
   return pair;
 }
 

@@ -8,9 +8,9 @@
 
 namespace signorini {
 
-/// What v and σ* of an admissible pair count in a sum over several pairs on one mesh.
+/// What an admissible pair counts in a sum over several pairs on one mesh.
 struct PairTerm {
-  double of_displacement, of_stress;
+  double factor;
   const Discretization& discrete;  ///< which the pair belongs to
   const Eigen::MatrixXd& stress;   ///< σ_h
   const AdmissibleDisplacement& v;
@@ -19,7 +19,7 @@ struct PairTerm {
 template <int D, typename Term>
 Quadratic<D> displacement_on(const std::vector<Term>& terms, int t) {
   Quadratic<D> sum = Quadratic<D>::Zero();
-  for (const PairTerm& term : terms) sum += term.of_displacement * term.v.on<D>(t);
+  for (const PairTerm& term : terms) sum += term.factor * term.v.on<D>(t);
   return sum;
 }
 
@@ -36,8 +36,8 @@ void add_lifts(const std::vector<Term>& terms, int t, const Point& reference, co
     Eigen::Matrix<double, D, 1> own = Eigen::Matrix<double, D, 1>::Zero();
     Tensor<D> own_slope = Tensor<D>::Zero();
     term.v.add_lifts<D>(t, reference, inverse, own, own_slope);
-    value += term.of_displacement * own;
-    slope += term.of_displacement * own_slope;
+    value += term.factor * own;
+    slope += term.factor * own_slope;
   }
 }
 
@@ -46,8 +46,8 @@ AdmissibleDisplacement::LiftRest rest_of_lifts(const std::vector<Term>& terms, i
   AdmissibleDisplacement::LiftRest sum;
   for (const PairTerm& term : terms) {
     const AdmissibleDisplacement::LiftRest own = term.v.rest_of_lifts(t);
-    sum.value += std::abs(term.of_displacement) * own.value;
-    sum.slope += std::abs(term.of_displacement) * own.slope;
+    sum.value += std::abs(term.factor) * own.value;
+    sum.slope += std::abs(term.factor) * own.slope;
   }
   return sum;
 }

@@ -39,8 +39,8 @@ struct TriangleSums {
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the stream function of both it and the
 /// pressure; v is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 ///
-/// v and σ* may be sums of those of several pairs on one mesh, each times a number. The load is that of the
-/// discretization.
+/// v and σ* may be sums of those of several pairs on one mesh, each times a number; the load is the same sum
+/// of theirs.
 ///
 /// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has
 /// beyond that counts twice, in the integral and in the rule, whose weights are positive.
@@ -51,7 +51,8 @@ class MembraneSums {
   };
 
   MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
-  MembraneSums(const Discretization& discrete, std::vector<Term> terms);
+  /// `load`: of all terms together. It must outlive this.
+  MembraneSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load);
   explicit MembraneSums(const PatchPairs& pairs);
 
   TriangleSums operator()(int t, LawField<1>& law, const LawOnMesh& laws) const;
@@ -78,6 +79,7 @@ class MembraneSums {
 
   const Discretization& discrete_;
   std::vector<Term> terms_;
+  const LoadProjection& load_;
   const AdmissiblePair* second_ = nullptr;  ///< against that of the only term
   const Eigen::MatrixXd* change_ = nullptr;
 };
@@ -95,8 +97,9 @@ class ElasticSums {
     const EdgeTractions& tractions;
   };
 
-  /// Of several pairs: `gap`, `strain` and `energy` alone.
-  ElasticSums(const Discretization& discrete, std::vector<Term> terms);
+  /// Of several pairs: `gap`, `strain` and `energy` alone. `load`: of all terms together. It must outlive
+  /// this.
+  ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load);
   ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions);
 
@@ -127,6 +130,7 @@ class ElasticSums {
 
   const Discretization& discrete_;
   std::vector<Term> terms_;
+  const LoadProjection& load_;
   const bool has_load_;
   bool needs_all_ = false;
   PerShape<Shape> shapes_;

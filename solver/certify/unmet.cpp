@@ -15,8 +15,11 @@ std::vector<std::string> reasons_against(const Discretization& discrete, const S
         "the stress is not in equilibrium, by more than rounding leaves of it where the law is so nearly "
         "incompressible or of so different stiffnesses: take Poisson's ratio further from 1/2, or a smaller "
         "contrast");
+  // A dual displacement may vanish, though what it is held to does not.
+  const double largest =
+      pair.pressure.is_of_dual ? pair.v.scale() : solution.displacement.cwiseAbs().maxCoeff();
   for (const auto& reasons : {discrete.body.unmet(), discrete.traction.unmet(), laws.unmet(),
-                              lost_digits(discrete, solution.displacement.cwiseAbs().maxCoeff(), progress)})
+                              lost_digits(discrete, largest, progress)})
     all.insert(all.end(), reasons.begin(), reasons.end());
   return all;
 }

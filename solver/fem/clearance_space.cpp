@@ -50,9 +50,10 @@ struct HeldPoints {
 
 class Builder {
  public:
-  Builder(const Problem& problem, const Mesh& mesh, double reach)
+  Builder(const Problem& problem, const Mesh& mesh, double reach, ClearanceOf of)
       : mesh_(mesh),
         reach_(reach),
+        of_(of),
         components_(components(problem.material)),
         order_(spaces_of(problem.scheme, components_).order),
         held_(problem, mesh) {
@@ -96,7 +97,8 @@ class Builder {
     const LocalVector projection = project_onto_edge(order_, edge_moments(order_, gap));
     const Vector direction = contact_direction(mesh_, mesh_.boundary[part], condition, edge);
     ContactEdge contact{edge, {}, {}, straightened(direction, edge, way)};
-    for (int end = 0; end < 2; ++end) require_room(part, edge, end, condition, contact.direction);
+    for (int end = 0; end < 2 && of_ == ClearanceOf::solution; ++end)
+      require_room(part, edge, end, condition, contact.direction);
     if (order_ == 0)
       contact.rows[0] = contact.rows[1] = new_row({part, (from + to) / 2, projection[0]});
     else
@@ -166,13 +168,14 @@ class Builder {
   /// λ = g − u_n is known there; where the gap jumps in the node it may seem to be negative.
   int held_row(ClearanceRow row, double normal_displacement) {
     row.datum = row.gap - normal_displacement;
-    if (row.datum < rounding_of(row.gap)) row.datum = 0;
+    if (of_ == ClearanceOf::solution && row.datum < rounding_of(row.gap)) row.datum = 0;
     space_.rows.push_back(row);
     return static_cast<int>(space_.rows.size()) - 1;
   }
 
   const Mesh& mesh_;
   const double reach_;
+  const ClearanceOf of_;
   const int components_;
   const int order_;
   const HeldPoints held_;
@@ -205,8 +208,8 @@ bool ClearanceSpace::is_touched_too_early(const Eigen::VectorXd& unknown) const 
   });
 }
 
-ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh, double reach) {
-  Builder builder(problem, mesh, reach);
+ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh, double reach, ClearanceOf of) {
+  Builder builder(problem, mesh, reach, of);
   for (int part = 0; part < static_cast<int>(mesh.boundary.size()); ++part)
     if (const auto* contact = condition_on<Contact>(problem, mesh.boundary[part].name))
       builder.add_part(part, *contact);

@@ -64,6 +64,10 @@ struct ClearanceSpace {
   bool is_touched_too_early(const Eigen::VectorXd& unknown) const;
 };
 
+/// What clearances are of: of u, which no part holds beyond the gap, or of a change of it, which may have
+/// either sign.
+enum class ClearanceOf { solution, change };
+
 /// Builds Λ_h and evaluates the gap. Throws InvalidProblem where a contact part begins beside a part that
 /// holds the body beyond the gap, a fixed one, or a roller along the same line: v_n would have to jump there,
 /// and no displacement of finite energy does. Where the directions of contact and roller differ, a
@@ -72,6 +76,7 @@ struct ClearanceSpace {
 /// `reach`: ClearanceSpace::reach. As long as nothing touches a foundation that was drawn near, the
 /// displacement is the same, and it keeps the digits that it would lose beside a large gap.
 ClearanceSpace make_clearance_space(const Problem& problem, const Mesh& mesh,
-                                    double reach = std::numeric_limits<double>::infinity());
+                                    double reach = std::numeric_limits<double>::infinity(),
+                                    ClearanceOf of = ClearanceOf::solution);
 
 }  // namespace signorini

@@ -1,5 +1,6 @@
 #include "fem/discretization.hpp"
 
+#include <limits>
 #include <utility>
 
 #include "fem/couple.hpp"
@@ -11,14 +12,14 @@ Discretization::Discretization(const Problem& posed, const Mesh& given, Progress
     : Discretization(posed, given, LoadProjection(posed, given, progress), progress) {}
 
 Discretization::Discretization(const Problem& posed, const Mesh& given, LoadProjection projected,
-                               Progress* progress)
+                               Progress* progress, ClearanceOf of)
     : problem(posed),
       mesh(given),
       element(posed),
       body(std::move(projected)),
       traction(posed, mesh, progress),
       load(spaces().displacements(), triangles()),
-      clearance(make_clearance_space(posed, mesh)),
+      clearance(make_clearance_space(posed, mesh, std::numeric_limits<double>::infinity(), of)),
       traces(posed, mesh, clearance),
       coupling_load(Eigen::VectorXd::Zero(traces.unknowns())) {
   take_up_body_load();

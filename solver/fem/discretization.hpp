@@ -18,7 +18,8 @@ struct Discretization {
   /// `progress`: asked while loads that vary are projected; throws what it throws.
   Discretization(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
   /// With the body load projected already.
-  Discretization(const Problem& problem, const Mesh& mesh, LoadProjection body, Progress* progress);
+  Discretization(const Problem& problem, const Mesh& mesh, LoadProjection body, Progress* progress,
+                 ClearanceOf of = ClearanceOf::solution);
   Discretization(const Discretization&) = delete;
   Discretization& operator=(const Discretization&) = delete;
 

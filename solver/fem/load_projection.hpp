@@ -35,6 +35,8 @@ class LoadProjection {
   LoadProjection plus(double z, const LoadProjection& other) const;
 
   const ProjectedLoad& operator[](int t) const { return all_[all_.size() == 1 ? 0 : t]; }
+  /// It is not known to be 0.
+  bool is_any() const { return varies() || !all_[0].projection.isZero(0); }
   /// f is not the same all over some triangle.
   bool varies() const { return all_.size() > 1; }
   /// Why what it says of f is not certain; empty if it is.

@@ -19,7 +19,7 @@ struct Fixed {
 };
 
 /// u_n = motion · n and no tangential stress; elasticity only. No problem that is read moves its rollers,
-/// neighbour() does.
+/// dual_problem() does.
 struct Roller {
   SupportMotion motion = {};
 };

@@ -21,34 +21,36 @@ VectorField field_of(const SupportMotion& motion, int components) {
           linear(motion.translation.y(), motion.rotation, Operation::x)};
 }
 
+/// The same kind of condition, which leaves the operator as it is.
+Condition without_data(const Condition& condition) {
+  if (const auto* contact = std::get_if<Contact>(&condition)) {
+    Contact own = *contact;
+    own.gap = Field(0);
+    return own;
+  }
+  if (std::holds_alternative<Fixed>(condition)) return Fixed{};
+  if (std::holds_alternative<Roller>(condition)) return Roller{};
+  return Traction{};
+}
+
 }  // namespace
 
-Problem neighbour(const Problem& problem, const Quantity& quantity, double z) {
+Problem dual_problem(const Problem& problem, const Quantity& quantity) {
   Problem all = problem;
   all.load_key.clear();
   all.quantities.clear();
-  all.body = problem.body.plus(z, quantity.density);
-  for (const auto& [part, weight] : quantity.weights) {
-    Contact& contact = std::get<Contact>(all.boundary.at(part));
-    contact.gap = contact.gap.plus(z, weight);
-  }
+  all.body = quantity.density;
+  for (auto& [part, condition] : all.boundary) condition = without_data(condition);
+  for (const auto& [part, weight] : quantity.weights) std::get<Contact>(all.boundary.at(part)).gap = weight;
   for (const auto& [part, motion] : quantity.motions) {
+    const SupportMotion back{-motion.translation, -motion.rotation};
     Condition& condition = all.boundary.at(part);
-    if (auto* roller = std::get_if<Roller>(&condition)) {
-      roller->motion.translation -= z * motion.translation;
-      roller->motion.rotation -= z * motion.rotation;
-      continue;
-    }
-    Fixed& fixed = std::get<Fixed>(condition);
-    fixed.value = fixed.value.plus(-z, field_of(motion, components(problem.material)));
+    if (auto* roller = std::get_if<Roller>(&condition))
+      roller->motion = back;
+    else
+      std::get<Fixed>(condition).value = field_of(back, components(problem.material));
   }
-  for (const auto& [part, density] : quantity.densities) {
-    Condition& condition = all.boundary.try_emplace(part, Traction{}).first->second;
-    VectorField& traction = std::holds_alternative<Pressure>(condition)
-                                ? std::get<Pressure>(condition).besides
-                                : std::get<Traction>(condition).value;
-    traction = traction.plus(z, density);
-  }
+  for (const auto& [part, density] : quantity.densities) all.boundary[part] = Traction{density};
   return all;
 }
 

@@ -38,8 +38,8 @@ struct Outline {
 ///     Q = <p, w> + (q, u) + <r, u> + Σ ∫ ρ·σn,
 ///
 /// with weights w on contact parts, densities q in the domain and r on parts of Γ_F, and motions ρ of parts
-/// that are fixed or on rollers, where σn is what acts on the body. Each of them is along which data change
-/// in neighbour(), and −Q is how the least energy changes with them (certify/THEORY.md, section 9). Or Q = ∫
+/// that are fixed or on rollers, where σn is what acts on the body. They are the data of
+/// dual_problem(), and −Q is how the least energy changes along them (certify/THEORY.md, section 9). Or Q = ∫
 /// w λ tells how far a contact is open.
 struct Quantity {
   std::string name;
@@ -53,13 +53,13 @@ struct Quantity {
   std::optional<Outline> outline;
   std::map<std::string, Field> openings;  ///< w of ∫ w λ, by parts; then there is nothing else
 
-  /// Its neighbours have the loads of the problem.
+  /// Its dual problem has no loads.
   bool has_no_loads() const { return density.size() == 0 && densities.empty(); }
 };
 
-/// The problem with the gaps g + z w, the load f + z q, the tractions t + z r, the fixed values u_D − z ρ and
-/// the rollers moved by −z ρ.
+/// The problem with the gaps w, the load q, the tractions r, the fixed values −ρ and the rollers moved by −ρ,
+/// and 0 where the quantity names nothing: what the data of the problem are changed by along the quantity.
 /// Its operator is the same.
-Problem neighbour(const Problem& problem, const Quantity& quantity, double z);
+Problem dual_problem(const Problem& problem, const Quantity& quantity);
 
 }  // namespace signorini

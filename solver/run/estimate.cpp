@@ -50,13 +50,13 @@ double longer_for(std::int64_t triangles, std::int64_t most) {
   return times;
 }
 
-/// Of enclosing a quantity, as measured: a neighbour, its certificate and the sums over the mesh. The cells
-/// of a load that jumps share a budget.
+/// Of enclosing a quantity, as measured: its dual problem, its certificate and the sums over the mesh. The
+/// cells of a load that jumps share a budget.
 double seconds_of(const Quantity& quantity, const Spaces& spaces, double triangles) {
-  const double of_neighbour = spaces.components == 1 ? 7e-6 : spaces.order == 0 ? 2.2e-5 : 3.5e-5;
+  const double of_dual = spaces.components == 1 ? 3e-6 : spaces.order == 0 ? 1.1e-5 : 1.4e-5;
   const bool varies = !std::ranges::all_of(quantity.density.fields(), &Field::is_constant);
   const double of_cells = quantity.disc || quantity.outline ? 0.7 * std::pow(triangles / 512, 0.3) : 0;
-  return (of_neighbour + (varies ? 1.5e-5 : 0)) * triangles + of_cells;
+  return (of_dual + (varies ? 8e-6 : 0)) * triangles + of_cells;
 }
 
 double seconds_of_quantities(const Problem& problem, double triangles) {
@@ -321,7 +321,7 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
     const bool opens = std::ranges::any_of(
         problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
     if (opens) estimate.memory_bytes *= 2;
-    estimate.memory_bytes += memory_of_neighbours(problem_, spaces, sizes.triangles);
+    estimate.memory_bytes += memory_of_dual(problem_, spaces, sizes.triangles);
   }
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);

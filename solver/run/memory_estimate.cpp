@@ -155,12 +155,12 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
   return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
 }
 
-/// Measured on structured meshes with 96 × 96 squares, in solutions: 2.6 and 6.1 at most, beside the loads of
-/// both and that of the quantity where they vary.
-double memory_of_neighbours(const Problem& problem, const Spaces& spaces, double triangles) {
+/// As measured, in solutions, beside the load of the quantity and its sum with that of the problem where they
+/// vary.
+double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles) {
   const bool density_varies = !std::ranges::all_of(problem.quantities, is_uniform, &Quantity::density);
-  const int loads = density_varies ? 3 : is_uniform(problem.body) ? 0 : 2;
-  return (spaces.components == 1 ? 3 : 7) * memory_of_solution(spaces, triangles) +
+  const int loads = density_varies ? 2 : is_uniform(problem.body) ? 0 : 1;
+  return (spaces.components == 1 ? 2 : 5) * memory_of_solution(spaces, triangles) +
          triangles * loads * static_cast<double>(sizeof(ProjectedLoad));
 }
 

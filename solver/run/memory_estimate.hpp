@@ -32,8 +32,8 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
 /// The Solution of a solve alone.
 double memory_of_solution(const Spaces& spaces, double triangles);
 
-/// What enclosing quantities takes besides: two neighbours at a time with their pairs, and that of the base.
-double memory_of_neighbours(const Problem& problem, const Spaces& spaces, double triangles);
+/// What enclosing quantities takes besides: a dual problem at a time with its pair, and that of the base.
+double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles);
 
 /// What the solution keeps of the levels of a mesh that refines itself, each of which has half as many
 /// triangles again as the one before.

@@ -5,7 +5,7 @@
 
 namespace signorini {
 
-/// Adds to a certificate what the problem asks for, if there is a bound, by the solutions of neighbouring
+/// Adds to a certificate what the problem asks for, if there is a bound, by the solutions of dual
 /// problems with the operator at hand (certify/THEORY.md, section 9). `fields`, `solution`: of the condensed
 /// problem.
 void enclose_quantities(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,

@@ -94,8 +94,8 @@ TEST_P(Memory, OfOtherMeshesAndLaws) {
   expect_bound(varying, {ActiveSet{}, std::nullopt}, tables_of_laws);
 }
 
-/// Two neighbours at a time, and the load of the quantity beside them.
-TEST_P(Memory, OfQuantitiesIsThatOfTheirNeighbours) {
+/// One dual problem at a time, and the loads of it and of both.
+TEST_P(Memory, OfQuantitiesIsThatOfTheirDuals) {
   Quantity mean;
   mean.name = "mean";
   const int n = long_tests() ? 96 : 50;

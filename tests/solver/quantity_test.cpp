@@ -10,6 +10,9 @@
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
 #include "problems/seconds_at_work.hpp"
+#include "result/summarize.hpp"
+#include "run/dual_solution.hpp"
+#include "run/requested_mesh.hpp"
 #include "solve.hpp"
 
 namespace signorini::quantity_test {
@@ -448,6 +451,115 @@ void expect_enclosed(Problem problem) {
     EXPECT_LE(better.lower, own.upper) << own.name;
     EXPECT_GE(better.upper, own.lower) << own.name;
   }
+}
+
+/// The pair of a quantity's dual problem beside that of the problem.
+class DualPairs {
+ public:
+  DualPairs(const Problem& problem, double factor)
+      : problem_(problem),
+        condensed_(problem_, requested_mesh(problem_, progress_), Factorization::multifrontal, progress_),
+        fields_(condensed_.find(ActiveSet{}, progress_)),
+        solution_(describe(discrete(), fields_, {ActiveSet{}, {}}, progress_)),
+        laws_(problem_.material, discrete().mesh, 1e-5, progress_),
+        base_(discrete(), solution_, admissible_pair(discrete(), solution_, fields_.coupling, progress_),
+              laws_, progress_),
+        dual_solution_(condensed_, problem_.quantities.front(), progress_),
+        dual_(solved(factor).certified(base_, factor, laws_, progress_)) {}
+
+  const Discretization& discrete() const { return condensed_.discretization(); }
+  const AdmissiblePair& base() const { return base_.pair; }
+  const AdmissiblePair& dual() const { return dual_.pair; }
+  double factor() const {
+    return std::max(dual().v.factor(), dual().pressure.factor_beside(base().pressure));
+  }
+
+ private:
+  const DualSolution& solved(double factor) {
+    dual_solution_.solve(fields_.clearance, factor, progress_);
+    return dual_solution_;
+  }
+
+  Observer observer_;
+  Progress progress_{observer_, std::nullopt};
+  const Problem problem_;
+  CondensedProblem condensed_;
+  const Fields fields_;
+  const Solution solution_;
+  const LawOnMesh laws_;
+  const CertifiedSolution base_;
+  DualSolution dual_solution_;
+  const CertifiedSolution dual_;
+};
+
+/// A membrane that sags onto a foundation with waves.
+Problem sagging_membrane(Scheme scheme, int n) {
+  Problem problem = problems::paper(scheme, n);
+  problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{formula("1.3 + 0.3 * sin(6 * x)")}}};
+  problem.body = VectorField(Field(-3));
+  return problem;
+}
+
+/// |w − η_n| ≤ K (g − v_n) + b 4 s (1 − s) and |p_τ| ≤ K p* in many points, of contacts that begin somewhere.
+void expect_within_bounds(const Problem& problem, double given) {
+  const DualPairs pairs(problem, given);
+  EXPECT_TRUE(pairs.dual().unmet().empty());
+  const double factor = pairs.factor();
+  EXPECT_TRUE(std::isfinite(factor));
+  const auto &base = pairs.base().pressure, &dual = pairs.dual().pressure;
+  double largest = 0, pressure = 0;
+  for (const ContactEdge& contact : pairs.discrete().clearance.edges)
+    largest = std::max(largest, std::abs(pairs.dual().v.along_contact(contact, 0.5)));
+  int closed = 0, open = 0;
+  for (std::size_t i = 0; i < base.at_ends.size(); ++i) {
+    const ContactEdge& contact = pairs.discrete().clearance.edges[i];
+    const double beyond = pairs.dual().v.beyond_base(contact);
+    for (int k = 0; k <= 20; ++k) {
+      const double s = k / 20., room = pairs.base().v.room(contact, s);
+      EXPECT_LE(std::abs(pairs.dual().v.room(contact, s)),
+                factor * std::max(0., room) + beyond * 4 * s * (1 - s) + 1e-9 * largest)
+          << i << " " << s;
+    }
+    for (const int k : {0, 1}) {
+      EXPECT_LE(std::abs(dual.at_ends[i][k]), factor * base.at_ends[i][k] * (1 + 1e-12));
+      pressure = std::max(pressure, std::abs(dual.at_ends[i][k]));
+    }
+    ++(base.at_ends[i][0] > 1e-9 * base.at_ends[base.at_ends.size() / 2][0] ? closed : open);
+  }
+  EXPECT_GT(pressure, 0);
+  EXPECT_GT(closed, 0);
+  EXPECT_GT(open, 0);
+}
+
+TEST(DualPairs, StayWithinTheirBoundsWhereContactBegins) {
+  for (const Scheme scheme : {Scheme::nonconforming, Scheme::conforming})
+    for (const Problem& problem :
+         {sagging_membrane(scheme, 12), block(scheme, 12), problems::half_disc(scheme)})
+      for (const char* weight : {"1 + x", "max(0, 0.3 - abs(x - 0.41))"})
+        for (const double factor : {1e3, 30., 1.}) {
+          SCOPED_TRACE(std::string(weight) +
+                       (scheme == Scheme::conforming ? " conforming " : " nonconforming ") +
+                       std::to_string(factor));
+          Problem asked = problem;
+          std::string part;
+          for (const auto& [name, condition] : problem.boundary)
+            if (std::holds_alternative<Contact>(condition)) part = name;
+          asked.quantities = {pressure_force(part, formula(weight))};
+          expect_within_bounds(asked, factor);
+        }
+}
+
+/// Where a contact is closed v follows the gap, so that no pressure works on a distance.
+TEST(DualPairs, BelongToADisplacementThatFollowsTheGap) {
+  Problem problem = block(Scheme::conforming, 12);
+  const DualPairs pairs(problem, 100);
+  int followed = 0;
+  for (const ContactEdge& contact : pairs.discrete().clearance.edges)
+    if (pairs.base().v.off_followed_gap(contact)) {
+      ++followed;
+      EXPECT_NEAR(pairs.base().v.room(contact, 0.5), 0, 1e-12);
+    }
+  EXPECT_GE(followed, 3);
 }
 
 constexpr unsigned kSeeds = 8;

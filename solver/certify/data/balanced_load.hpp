@@ -5,12 +5,6 @@
 
 namespace signorini {
 
-/// Π₂f, the load that does the work on what is quadratic.
-template <int D>
-Quadratic<D> quadratic_load(const Discretization& discrete, int t) {
-  return discrete.body[t].projection;
-}
-
 /// Πf, the load that σ* is in equilibrium with.
 template <int D>
 Quadratic<D> balanced_load(const Discretization& discrete, int t) {

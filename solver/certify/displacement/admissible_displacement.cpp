@@ -9,6 +9,7 @@
 
 #include "certify/displacement/displacement_relaxation.hpp"
 #include "certify/displacement/gap_bubble.hpp"
+#include "certify/displacement/largest_coefficient.hpp"
 #include "certify/displacement/recovered_displacement.hpp"
 #include "certify/displacement/relaxation.hpp"
 #include "fem/edge_pieces.hpp"
@@ -16,15 +17,11 @@
 namespace signorini {
 namespace {
 
-/// Below this part of the displacement a difference is rounding.
-constexpr double kSmall = 1e-12;
-/// What is fixed may be off a condition that it meets by so much.
-constexpr double kNearly = 1e3 * kSmall;
 /// So many times the largest displacement is out of reach.
 constexpr double kReach = 1e3;
 
-/// Of all edges on which a gap is enclosed; none takes more than a fifth of what the others have left.
-constexpr int kCellsOfGaps = 20'000, kShares = 5;
+/// None takes more than a fifth of what the others have left.
+constexpr int kShares = 5;
 
 Eigen::VectorXd value_of(const VectorField& field, int components, const Point& x, const Vector& normal) {
   Eigen::VectorXd value(components);
@@ -58,24 +55,6 @@ bool jumps_at_end(const Field& field, const EdgeLine& line, double s, double rou
   return !(values.lower() <= line.value(field, s) && line.value(field, s) <= values.upper());
 }
 
-/// Of the Taylor coefficients of this order, in s, on the whole edge: infinite where the field is not smooth.
-/// Short parts tell more: they become shorter until less than `small` is left, or as long as that helps.
-double largest_coefficient(const Field& field, const EdgeLine& line, int order, double small) {
-  constexpr int kMostCuts = 256;
-  double known = std::numeric_limits<double>::infinity();
-  for (int cuts = 4; cuts <= kMostCuts; cuts *= 4) {
-    double most = 0;
-    for (int i = 0; i < cuts; ++i) {
-      const Interval own = series_on(field, line, Interval(1. * i / cuts, (i + 1.) / cuts), order)[order];
-      most = std::max(most, is_known(own) ? largest(own) : std::numeric_limits<double>::infinity());
-    }
-    const bool helps = most < 0.9 * known;
-    known = std::min(known, most);
-    if (known <= small || (!helps && std::isfinite(known))) break;
-  }
-  return known;
-}
-
 /// How far a field is from the straight line between its values at the ends of the edge, in some points.
 double bend(const Field& field, const EdgeLine& line) {
   const double begin = line.value(field, 0), end = line.value(field, 1);
@@ -95,20 +74,25 @@ const Field& gap_on(const Discretization& discrete, const ContactEdge& contact) 
 }
 
 AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
-                                               const Eigen::VectorXd& coupling, Progress& progress)
+                                               const Eigen::VectorXd& coupling)
     : discrete_(discrete),
       components_(discrete.spaces().components),
       clearance_(discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()))),
       points_(displacement_at_corners(discrete, solution)),
-      scale_(points_.cwiseAbs().maxCoeff()) {
+      scale_(points_.cwiseAbs().maxCoeff()) {}
+
+AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
+                                               const Eigen::VectorXd& coupling, Progress& progress)
+    : AdmissibleDisplacement(discrete, solution, coupling) {
   for (std::size_t i = 0; i < discrete.clearance.rows.size(); ++i)
     clearance_[i] += discrete.clearance.rows[i].beyond;
   constrain_points();
+  constrain_to_gap();
+  admit_points();
+  if (components_ == 2) follow_traces();
   set_middles(coupling);
-  for (const BoundaryPart& part : discrete.mesh.boundary) {
-    if (const auto* fixed = condition_on<Fixed>(discrete.problem, part.name)) fix(part, *fixed);
-    if (const auto* roller = condition_on<Roller>(discrete.problem, part.name)) roll(part, roller->motion);
-  }
+  meet_supports();
+  find_followed_gaps();
   CellBudget budget{kCellsOfGaps, &progress};
   lower_points(budget);
   for (const ContactEdge& contact : discrete.clearance.edges) meet(contact, budget);
@@ -123,7 +107,9 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
   for (const BoundaryPart& part : mesh.boundary)
     if (condition_on<Fixed>(discrete_.problem, part.name))
       for (const int edge : part.edges) values.held_middles[edge] = true;
-  const auto touches = [&](const ContactEdge& contact, int k) { return clearance_[contact.rows[k]] <= 0; };
+  const auto touches = [&](const ContactEdge& contact, int k) {
+    return beside_.base || clearance_[contact.rows[k]] <= 0;
+  };
   for (const ContactEdge& contact : discrete_.clearance.edges) {
     values.held_middles[contact.edge] = touches(contact, 0) && touches(contact, 1);
     for (int k = 0; k < 2; ++k)
@@ -132,6 +118,7 @@ void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progr
   signorini::relax(discrete_, stiffness_of, values, work, steps, progress);
   points_.row(0) = values.points;
   middles_.row(0) = values.middles;
+  if (beside_.base) return;
   for (const ContactEdge& contact : discrete_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const int point = mesh.edges[contact.edge][k];
@@ -166,6 +153,7 @@ void AdmissibleDisplacement::relax_on_stars(int sweeps, Progress& progress) {
     freedom[points + contact.edge].hold_along(contact.direction, rounding);
   }
   relax_displacement(discrete_, freedom, sweeps, points_, middles_, progress);
+  if (beside_.base) return;
   CellBudget budget{kCellsOfGaps, &progress};
   for (const ContactEdge& contact : discrete_.clearance.edges)
     if (!follows_gap(contact)) lower_below(contact, budget);
@@ -271,21 +259,13 @@ void AdmissibleDisplacement::refuse_point(int point) {
   refuse("no displacement meets all conditions at " + to_string(discrete_.mesh.points[point]));
 }
 
-/// The points of Γ_D get u_D; those of Γ_C and of rollers the nearest value that their edges allow.
+/// The points of Γ_D get u_D; those of rollers, and of Γ_C, the nearest value that their edges allow.
 void AdmissibleDisplacement::constrain_points() {
   const Mesh& mesh = discrete_.mesh;
   for (const BoundaryPart& part : mesh.boundary)
     if (const auto* fixed = condition_on<Fixed>(discrete_.problem, part.name))
       for (const int edge : part.edges) fix_points(edge, *fixed);
 
-  // The normals of a straight line are one, but for rounding, and must not meet in a point.
-  const auto constrain = [&](int point, PointConstraint constraint) {
-    for (const PointConstraint& known : constraints_[point])
-      if (components_ == 2 &&
-          is_same_direction(known.direction, constraint.direction, known.rounding + constraint.rounding))
-        constraint.direction = known.direction;
-    constraints_[point].push_back(std::move(constraint));
-  };
   for (const BoundaryPart& part : mesh.boundary)
     if (const auto* roller = condition_on<Roller>(discrete_.problem, part.name))
       for (const int edge : part.edges)
@@ -294,17 +274,38 @@ void AdmissibleDisplacement::constrain_points() {
           constrain(point, {n, roller->motion(mesh.points[point]).dot(n), true, true,
                             mesh.rounding_of_normal(edge)});
         }
+}
+
+/// The normals of a straight line are one, but for rounding, and must not meet in a point.
+void AdmissibleDisplacement::constrain(int point, PointConstraint constraint) {
+  for (const PointConstraint& known : constraints_[point])
+    if (components_ == 2 &&
+        is_same_direction(known.direction, constraint.direction, known.rounding + constraint.rounding))
+      constraint.direction = known.direction;
+  constraints_[point].push_back(std::move(constraint));
+}
+
+void AdmissibleDisplacement::constrain_to_gap() {
   for (const ContactEdge& contact : discrete_.clearance.edges)
     for (int k = 0; k < 2; ++k) {
       const double g = gap_at(contact, k);
       // A gap that is out of reach rounds nothing that matters.
       if (std::abs(g) < kReach * scale_) scale_ = std::max(scale_, std::abs(g));
       const bool touches = clearance_[contact.rows[k]] <= 0;
-      constrain(mesh.edges[contact.edge][k],
-                {direction(contact), g, touches, false, mesh.rounding_of_normal(contact.edge)});
+      constrain(discrete_.mesh.edges[contact.edge][k],
+                {direction(contact), g, touches, false, discrete_.mesh.rounding_of_normal(contact.edge)});
     }
+}
+
+void AdmissibleDisplacement::admit_points() {
   for (const auto& [point, own] : constraints_) admit(point, own);
-  if (components_ == 2) follow_traces();
+}
+
+void AdmissibleDisplacement::meet_supports() {
+  for (const BoundaryPart& part : discrete_.mesh.boundary) {
+    if (const auto* fixed = condition_on<Fixed>(discrete_.problem, part.name)) fix(part, *fixed);
+    if (const auto* roller = condition_on<Roller>(discrete_.problem, part.name)) roll(part, roller->motion);
+  }
 }
 
 /// A quadratic v_n that has the mean of the trace and is further from g at the ends exceeds it in between. To

@@ -34,8 +34,23 @@ class AdmissibleDisplacement {
   AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
                          const Eigen::VectorXd& coupling, Progress& progress);
 
+  /// η of a dual problem, whose gap is w: |w − η_n| ≤ K (g − v_n) + b 4 s (1 − s) on each edge of Γ_C, where
+  /// v is the displacement of the base, with the gap g. The factor K is no more than the given one, or than
+  /// what is fixed beside a contact needs; b is beyond_base().
+  AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
+                         const Eigen::VectorXd& coupling, const AdmissibleDisplacement& base, double factor,
+                         Progress& progress);
+
+  /// max |v|, and of what holds it.
+  double scale() const { return scale_; }
+
+  /// K of a dual problem.
+  double factor() const { return beside_.factor; }
+  /// b of a dual problem: 0 but for rounding unless w is neither a polynomial nor smooth on the edge.
+  double beyond_base(const ContactEdge& contact) const;
+
   /// Lowers ½ ‖∇v‖²_E − work(v) of a membrane's displacement, which stays admissible: see relaxation.hpp.
-  /// What is lifted stays as it is, and so do the values that touch.
+  /// What is lifted stays as it is, and so do the values that touch; of a dual problem all on Γ_C.
   void relax(const Eigen::VectorXd& work, int steps, Progress& progress);
 
   /// The same for an elastic body, in so many sweeps: see displacement_relaxation.hpp.
@@ -82,6 +97,16 @@ class AdmissibleDisplacement {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
+  /// Below this part of the displacement a difference is rounding.
+  static constexpr double kSmall = 1e-12;
+  /// What is fixed may be off a condition that it meets by so much.
+  static constexpr double kNearly = 1e3 * kSmall;
+  /// Of all edges on which a gap is enclosed.
+  static constexpr int kCellsOfGaps = 20'000;
+
+  AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
+                         const Eigen::VectorXd& coupling);
+
   /// What is lifted from the edge, or null; the edge runs from its first to its second point.
   const Lift* lift(int edge) const;
 
@@ -90,7 +115,12 @@ class AdmissibleDisplacement {
   void set_middles(const Eigen::VectorXd& coupling);
   void constrain_points();
   void fix_points(int edge, const Fixed& fixed);
+  void constrain(int point, PointConstraint constraint);
+  void constrain_to_gap();
+  void constrain_beside_base();
+  void admit_points();
   void admit(int point, std::vector<PointConstraint> constraints);
+  void meet_supports();
   void follow_traces();
   void find_followed_gaps();
   /// The clearance is 0 at both ends, and a polynomial is near the gap between them.
@@ -106,6 +136,12 @@ class AdmissibleDisplacement {
   void lower_below(const ContactEdge& contact, CellBudget& budget);
   BelowGap below_gap(const ContactEdge& contact, const EdgeLine& line) const;
   void add_lift(int edge, const Values& d);
+  bool touches_base(const ContactEdge& contact, int k) const;
+  double meet_base(const ContactEdge& contact, CellBudget& budget);
+  std::array<double, 2> bubbles_beyond_base(const ContactEdge& contact, double factor,
+                                            CellBudget& budget) const;
+  double stay_between_bubbles(const ContactEdge& contact, double factor, CellBudget& budget);
+  double follow_base(const ContactEdge& contact, const std::array<double, 2>& ratios);
   void refuse(const std::string& reason);
   void refuse_point(int point);
 
@@ -125,6 +161,12 @@ class AdmissibleDisplacement {
   std::map<int, double> off_gap_;  ///< of edges that follow their gap: by how much, over the bubble
   std::map<int, Lift> lifts_;
   std::map<int, LiftRest> rests_;  ///< of u_D on edges
+  /// Of a dual problem, where there is a base.
+  struct BesideBase {
+    const AdmissibleDisplacement* base = nullptr;
+    double factor = 0;                  ///< K
+    std::map<int, double> beyond = {};  ///< b, by edges
+  } beside_;
   std::vector<std::string> unmet_;
 };
 

@@ -19,14 +19,15 @@ int degree_of_fields(bool lifted) {
 
 ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
                          const AdmissibleDisplacement& v, const EdgeTractions& tractions)
-    : ElasticSums(discrete, {{{1, 1, discrete, solution.stress, v}, tractions}}) {
+    : ElasticSums(discrete, {{{1, discrete, solution.stress, v}, tractions}}, discrete.body) {
   needs_all_ = true;
 }
 
-ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms)
+ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load)
     : discrete_(discrete),
       terms_(std::move(terms)),
-      has_load_(discrete.problem.body.size() > 0),
+      load_(load),
+      has_load_(load.is_any()),
       shapes_(discrete) {}
 
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
@@ -35,9 +36,8 @@ ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
             displacement_on<2>(terms_, t).reshaped(),
             {}};
   for (const Term& term : terms_) {
-    if (term.of_stress == 0) continue;
-    sum.data += term.of_stress * johnson_mercier_data(term.discrete, term.tractions, t, map);
-    sum.stress += term.of_stress * term.stress.col(t);
+    sum.data += term.factor * johnson_mercier_data(term.discrete, term.tractions, t, map);
+    sum.stress += term.factor * term.stress.col(t);
   }
   return sum;
 }
@@ -69,8 +69,8 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
 void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
                                    const Given& given, const Inner& inner, TriangleSums& sums) const {
   if (!has_load_) return;
-  const ProjectedLoad& load = discrete_.body[t];
-  const Quadratic<2> quadratic = quadratic_load<2>(discrete_, t);
+  const ProjectedLoad& load = load_[t];
+  const Quadratic<2> quadratic = load.projection;
   double work = 0, rest_square = 0;
   for (int q = 0; q < rule.size(); ++q) {
     const JohnsonMercierRule::Values& at = rule.values[q];
@@ -93,7 +93,7 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
                                     TriangleSums& sums) const {
   const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
   if (rest.slope == 0) return;
-  const ProjectedLoad& load = discrete_.body[t];
+  const ProjectedLoad& load = load_[t];
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
   sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                        rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());

@@ -51,10 +51,11 @@ MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given,
 
 MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress,
                            const AdmissiblePair& pair)
-    : MembraneSums(discrete, {{{1, 1, discrete, stress, pair.v}, pair}}) {}
+    : MembraneSums(discrete, {{{1, discrete, stress, pair.v}, pair}}, discrete.body) {}
 
-MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms)
-    : discrete_(discrete), terms_(std::move(terms)) {}
+MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms,
+                           const LoadProjection& load)
+    : discrete_(discrete), terms_(std::move(terms)), load_(load) {}
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
     : MembraneSums(pairs.discretization(), pairs.stress(), pairs.first()) {
@@ -83,9 +84,8 @@ const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
 std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
   std::optional<QuadraticBalance::Data> sum;
   for (const Term& term : terms_) {
-    if (term.of_stress == 0) continue;
     const auto own = QuadraticBalance(term.discrete)(t);
-    if (own) sum = sum.value_or(QuadraticBalance::Data::Zero()) + term.of_stress * *own;
+    if (own) sum = sum.value_or(QuadraticBalance::Data::Zero()) + term.factor * *own;
   }
   return sum;
 }
@@ -114,7 +114,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   }
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
-  const ProjectedLoad& load = discrete_.body[t];
+  const ProjectedLoad& load = load_[t];
   const double area = AffineMap(discrete_.mesh.corners(t)).determinant / 2;
   const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
   sums.energy_slack += load.uncertain_work * bound_of_quadratic(displacement_on<1>(terms_, t));
@@ -135,15 +135,15 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
   Quadratic<1> stream_function = Quadratic<1>::Zero();
   LocalVector stress = LocalVector::Zero(terms_[0].stress.rows());
   for (const Term& term : terms_) {
-    stream_function += term.of_stress * term.pair.stream_function_on(discrete_.mesh, t);
-    stress += term.of_stress * term.stress.col(t);
+    stream_function += term.factor * term.pair.stream_function_on(discrete_.mesh, t);
+    stress += term.factor * term.stress.col(t);
   }
   Quadratic<1> w = Quadratic<1>::Zero(), stream_function_of_tau = Quadratic<1>::Zero();
   if (second_) {
     w = v - second_->v.on<1>(t);
     stream_function_of_tau = stream_function - second_->stream_function_on(discrete_.mesh, t);
   }
-  const Quadratic<1> acting = quadratic_load<1>(discrete_, t);
+  const Quadratic<1> acting = load_[t].projection;
   const bool curled = !stream_function.isZero(0), lifted = is_lifted(terms_, t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
@@ -188,7 +188,7 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     sums.slack += 2 * error * all_fields;
     sums.energy_slack += error * of_strain;
   }
-  const ProjectedLoad& body = discrete_.body[t];
+  const ProjectedLoad& body = load_[t];
   sums.energy_slack += body.rest * std::sqrt(lifted_square);
 }
 

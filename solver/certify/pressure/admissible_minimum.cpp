@@ -145,7 +145,7 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
              Eigen::Vector2d(1 - s, s);
   }
   const bool open = clearance[contact.rows[0]] > 0 && clearance[contact.rows[1]] > 0;
-  const bool is_kept = open || pressure.steep.contains(contact.edge);
+  const bool is_kept = open || pressure.is_of_dual || pressure.steep.contains(contact.edge);
   const auto& [first, second] = pressure.at_ends[i];
   return {MovingPressure{i, 0, first, std::move(changes[0]), rooms[0], is_kept},
           MovingPressure{i, 1, second, std::move(changes[1]), rooms[1], is_kept}};

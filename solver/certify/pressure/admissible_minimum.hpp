@@ -25,7 +25,7 @@ struct MovingPressure {
 };
 
 /// Those of both ends of edge i of the clearance space, which stay what they are where the contact is open or
-/// the pressure steep.
+/// the pressure steep, and in a dual problem.
 ///
 /// `clearance`: a value a row of the clearance space.
 std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,

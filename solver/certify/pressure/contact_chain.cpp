@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include <Eigen/QR>
 
@@ -103,6 +105,46 @@ std::array<double, 2> forces_of(double begin, double end, double length) {
   return {length * (2 * begin + end) / 6, length * (begin + 2 * end) / 6};
 }
 
+/// The pressure of a chain times the component r·d of a rigid motion r along the direction of contact.
+class PressureTimesMotion {
+ public:
+  /// `by_mean`: of a link on which r·d counts with its mean.
+  using ByMean = std::function<bool(const Link&)>;
+  PressureTimesMotion(const ChainMotions& motions, const ContactChain& chain, ByMean by_mean)
+      : by_mean_(std::move(by_mean)) {
+    for (const Link& link : chain) {
+      const auto [begin, end] = motions.along(link);
+      for (int k = 0; k < 3; ++k) {
+        const auto [first, second] = forces(link, begin[k], end[k]);
+        matrix_.col(k) += first * begin + second * end;
+      }
+    }
+  }
+
+  /// The forces of the link's pressure times the values at its ends.
+  std::array<double, 2> forces(const Link& link, double begin, double end) const {
+    const auto [p, q] = link.pressure();
+    if (by_mean_(link)) begin = end = (begin + end) / 2;
+    return forces_of(p * begin, q * end, link.length);
+  }
+
+  /// The motion with which it has this force and moment, and by how much they are missed.
+  Eigen::Vector3d motion_for(const Eigen::Vector3d& lack) const {
+    // A motion along a straight chain does no work, and the rotation about the middle of an arc hardly any.
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposition;
+    decomposition.setThreshold(1e-13);
+    decomposition.compute(matrix_);
+    return decomposition.solve(lack);
+  }
+  double misses(const Eigen::Vector3d& lack, const Eigen::Vector3d& motion) const {
+    return (matrix_ * motion - lack).norm();
+  }
+
+ private:
+  ByMean by_mean_;
+  Eigen::Matrix3d matrix_ = Eigen::Matrix3d::Zero();
+};
+
 }  // namespace
 
 std::vector<ContactChain> contact_chains(const Discretization& discrete, const Eigen::MatrixXd& stress) {
@@ -194,41 +236,86 @@ void AdmissibleChain::spread(Link& link) const {
   link.forces = {at_begin, force - at_begin};
 }
 
+AdmissibleChain::AdmissibleChain(const Discretization& discrete, ContactChain chain, const ContactChain& base,
+                                 double factor, double rounding)
+    : discrete_(discrete), chain_(std::move(chain)), least_share_(0) {
+  const auto excess = [&](std::size_t i) {
+    const double most = factor * base[i].force();
+    return chain_[i].force() - std::clamp(chain_[i].force(), -most, most);
+  };
+  // Γ_D takes what comes to its end.
+  const std::size_t last = chain_.size() - 1;
+  for (std::size_t i = 0; i < last || (i == last && is_held(true)); ++i) move(i + 1, excess(i));
+  for (std::size_t i = last; i > 0 || is_held(false); --i) {
+    move(i, -excess(i));
+    if (i == 0) break;
+  }
+  for (std::size_t i = 0; i <= last; ++i) {
+    if (excess(i) != 0 && std::abs(chain_[i].force()) <= rounding) chain_[i].forces = {0, 0};
+    keep_within(base[i], factor, chain_[i]);
+  }
+}
+
+bool AdmissibleChain::is_within(const ContactChain& base, double factor, double rounding) const {
+  for (std::size_t i = 0; i < chain_.size(); ++i)
+    if (std::abs(chain_[i].force()) > factor * base[i].force() + rounding) return false;
+  return true;
+}
+
+/// The ends of a link share its force, which is at most the factor times that of the base, as the bounds at
+/// both let them.
+void AdmissibleChain::keep_within(const Link& base, double factor, Link& link) const {
+  const double mean = link.force() / link.length;
+  const auto [p, q] = base.pressure();
+  if (discrete_.spaces().order == 0 || base.is_steep()) {
+    const double ratio = base.force() > 0 ? link.force() / base.force() : 0;
+    link.forces = {ratio * base.forces[0], link.force() - ratio * base.forces[0]};
+    return;
+  }
+  const double most = factor * p, other = factor * q, low = std::max(-most, 2 * mean - other),
+               high = std::min(most, 2 * mean + other);
+  double begin = std::clamp(link.pressure()[0], std::min(low, high), high);
+  if (p <= 0) begin = 0;
+  if (q <= 0) begin = 2 * mean;
+  link.forces = forces_of(begin, 2 * mean - begin, link.length);
+}
+
 bool AdmissibleChain::balance(const ContactChain& given, double rounding) {
   if (sum_of_forces(given) <= rounding) {
     for (Link& link : chain_) link.forces = {0, 0};
     return true;
   }
   const ChainMotions motions(discrete_, chain_);
-  // The forces of the pressure times the values at the ends of an edge.
-  const auto scaled = [&](const Link& link, double begin, double end) {
-    const auto [p, q] = link.pressure();
-    if (discrete_.spaces().order == 0) begin = end = (begin + end) / 2;
-    return forces_of(p * begin, q * end, link.length);
-  };
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  for (const Link& link : chain_) {
-    const auto [begin, end] = motions.along(link);
-    for (int k = 0; k < 3; ++k) {
-      const auto [first, second] = scaled(link, begin[k], end[k]);
-      matrix.col(k) += first * begin + second * end;
-    }
-  }
-  // A motion along a straight chain does no work, and the rotation about the middle of an arc hardly any.
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposition;
-  decomposition.setThreshold(1e-13);
-  decomposition.compute(matrix);
-  const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_), mu = decomposition.solve(lack);
-  bool pushes = (matrix * mu - lack).norm() <= 10 * rounding;
+  const PressureTimesMotion changes(motions, chain_,
+                                    [&](const Link&) { return discrete_.spaces().order == 0; });
+  const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_), mu = changes.motion_for(lack);
+  bool pushes = changes.misses(lack, mu) <= 10 * rounding;
   for (Link& link : chain_) {
     const auto [at_begin, at_end] = motions.along(link);
     const double begin = 1 + mu.dot(at_begin), end = 1 + mu.dot(at_end);
     pushes = pushes && (link.force() == 0 || (begin >= 0 && end >= 0));
-    link.forces = scaled(link, begin, end);
+    link.forces = changes.forces(link, begin, end);
     pushes = pushes && (discrete_.spaces().order == 0 ||
                         std::min(link.forces[0], link.forces[1]) >= (1 - 1e-9) * least_share_ * link.force());
   }
   return pushes;
+}
+
+bool AdmissibleChain::balance(const ContactChain& given, const ContactChain& base, double rounding) {
+  const ChainMotions motions(discrete_, chain_);
+  const PressureTimesMotion changes(
+      motions, base, [&](const Link& link) { return discrete_.spaces().order == 0 || link.is_steep(); });
+  const Eigen::Vector3d lack = motions.work(given) - motions.work(chain_);
+  if (lack.norm() <= rounding) return true;
+  const Eigen::Vector3d mu = changes.motion_for(lack);
+  if (!(changes.misses(lack, mu) <= 10 * rounding)) return false;
+  for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const auto [at_begin, at_end] = motions.along(base[i]);
+    const auto [begin, end] = changes.forces(base[i], mu.dot(at_begin), mu.dot(at_end));
+    chain_[i].forces[0] += begin;
+    chain_[i].forces[1] += end;
+  }
+  return true;
 }
 
 }  // namespace signorini

@@ -46,12 +46,22 @@ class AdmissibleChain {
   AdmissibleChain(const Discretization& discrete, ContactChain chain, const Eigen::VectorXd& clearance,
                   Transition transition, double least_share);
 
+  /// Of a dual problem: the pressure at each end of an edge is at most a factor times that of the base, and a
+  /// multiple of it on all of an edge where the base is steep.
+  AdmissibleChain(const Discretization& discrete, ContactChain chain, const ContactChain& base, double factor,
+                  double rounding);
+
+  /// No link has more than the factor times the force of the base.
+  bool is_within(const ContactChain& base, double factor, double rounding) const;
+
   const ContactChain& links() const { return chain_; }
 
   /// Of an elastic body: multiplies the pressure by 1 + r·d, where d is the direction of contact and r a
   /// rigid motion, such that force and moment are those of the given chain again. Returns false if the
   /// pressure would turn negative.
   bool balance(const ContactChain& given, double rounding);
+  /// Of a dual problem: adds the pressure of the base times r·d. Returns false if that does not do.
+  bool balance(const ContactChain& given, const ContactChain& base, double rounding);
 
   /// Neither end of the chain lies on Γ_D.
   bool has_free_ends() const { return !is_held(false) && !is_held(true); }
@@ -68,6 +78,7 @@ class AdmissibleChain {
   void carry_deficits();
   void carry(std::size_t from, std::size_t to);
   void spread(Link& link) const;
+  void keep_within(const Link& base, double factor, Link& link) const;
   bool is_open(std::size_t link, const Eigen::VectorXd& clearance) const;
   bool is_far(const Link& link) const;
 

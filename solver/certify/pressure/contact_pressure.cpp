@@ -80,15 +80,90 @@ ContactPressure::ContactPressure(const Discretization& discrete, const Eigen::Ma
     const double scale = kForceRounding * (sum_of_forces(given) + largest_flux);
     const AdmissibleChain chain = admissible(discrete, given, clearance, scale);
     keep(discrete, given, chain.links());
-    if (discrete.spaces().components == 2) {
-      add_airy(discrete, given, chain, scale);
-      continue;
-    }
-    ChainStreamFunction stream_function(given, chain);
-    if (const double lack = stream_function.take_lack(chain); std::abs(lack) > kNoLack * scale)
-      lacks.push_back({discrete.clearance.edges[given.back().number].edge, std::abs(lack), 0});
-    if (stream_function.largest() > scale)
-      add_curl(discrete, chain.links(), stream_function.at_nodes, stream_function.means);
+    spread(discrete, given, chain, scale);
+  }
+}
+
+ContactPressure::ContactPressure(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                                 const ContactPressure& base, double factor)
+    : at_ends(discrete.clearance.edges.size()), changes(at_ends.size()), is_of_dual(true) {
+  const double largest_flux = stress.cwiseAbs().maxCoeff();
+  for (const ContactChain& given : contact_chains(discrete, stress)) {
+    const double scale = kForceRounding * (sum_of_forces(given) + largest_flux);
+    const ContactChain bounds = base.with_own_forces(discrete, given);
+    AdmissibleChain chain = within_bounds(discrete, given, bounds, factor, scale);
+    // What the balance lacks is what it has, if nothing does better.
+    if (discrete.spaces().components == 2 && chain.has_free_ends()) chain.balance(given, bounds, scale);
+    keep(discrete, given, chain.links());
+    spread(discrete, given, chain, scale);
+  }
+  keep_steep(base, discrete);
+  forget_rounding(base, factor);
+}
+
+/// What is more than the factor times the base, but nothing beside the largest.
+void ContactPressure::forget_rounding(const ContactPressure& base, double factor) {
+  double largest = 0;
+  for (const std::array<double, 2>& own : at_ends)
+    largest = std::max({largest, std::abs(own[0]), std::abs(own[1])});
+  for (std::size_t i = 0; i < at_ends.size(); ++i)
+    for (const int k : {0, 1})
+      if (std::abs(at_ends[i][k]) <= kNoLack * kForceRounding * largest) {
+        const double most = factor * std::abs(base.at_ends[i][k]);
+        at_ends[i][k] = std::clamp(at_ends[i][k], -most, most);
+      }
+}
+
+/// With the factor, or twice, four times it and so on, until the chain as a whole takes its force.
+AdmissibleChain ContactPressure::within_bounds(const Discretization& discrete, const ContactChain& given,
+                                               const ContactChain& bounds, double factor, double rounding) {
+  constexpr int most_doublings = 30;
+  for (int doublings = 0;; ++doublings, factor *= 2) {
+    AdmissibleChain chain(discrete, given, bounds, factor, rounding);
+    if (chain.is_within(bounds, factor, rounding) || doublings == most_doublings) return chain;
+  }
+}
+
+double ContactPressure::factor_beside(const ContactPressure& base) const {
+  double most = 0;
+  for (std::size_t i = 0; i < at_ends.size(); ++i)
+    for (const int k : {0, 1})
+      if (at_ends[i][k] != 0) most = std::max(most, std::abs(at_ends[i][k] / base.at_ends[i][k]));
+  return most;
+}
+
+/// The change of the pressure goes on into the body as a stress without divergence.
+void ContactPressure::spread(const Discretization& discrete, const ContactChain& given,
+                             const AdmissibleChain& chain, double scale) {
+  if (discrete.spaces().components == 2) return add_airy(discrete, given, chain, scale);
+  ChainStreamFunction stream_function(given, chain);
+  if (const double lack = stream_function.take_lack(chain); std::abs(lack) > kNoLack * scale)
+    lacks.push_back({discrete.clearance.edges[given.back().number].edge, std::abs(lack), 0});
+  if (stream_function.largest() > scale)
+    add_curl(discrete, chain.links(), stream_function.at_nodes, stream_function.means);
+}
+
+/// The links of the chain with the forces of this pressure.
+ContactChain ContactPressure::with_own_forces(const Discretization& discrete, ContactChain chain) const {
+  for (Link& link : chain) {
+    auto [p, q] = at_ends[link.number];
+    if (discrete.mesh.edges[discrete.clearance.edges[link.number].edge][0] != link.begin) std::swap(p, q);
+    link.forces = {link.length * (2 * p + q) / 6, link.length * (p + 2 * q) / 6};
+  }
+  return chain;
+}
+
+/// Where the base is steep this is a multiple of it.
+void ContactPressure::keep_steep(const ContactPressure& base, const Discretization& discrete) {
+  for (std::size_t i = 0; i < at_ends.size(); ++i) {
+    const auto found = base.steep.find(discrete.clearance.edges[i].edge);
+    if (found == base.steep.end()) continue;
+    const auto sum = [](const std::array<double, 2>& ends) { return ends[0] + ends[1]; };
+    const double ratio = sum(at_ends[i]) / sum(base.at_ends[i]);
+    Steep own = found->second;
+    for (double& value : own.pressure.at_ends) value *= ratio;
+    own.beyond_linear *= std::abs(ratio);
+    steep.emplace(found->first, own);
   }
 }
 
@@ -140,9 +215,9 @@ void ContactPressure::keep(const Discretization& discrete, const ContactChain& g
       std::swap(old[0], old[1]);
     }
     for (int k = 0; k < 2; ++k) changes[given[i].number][k] = pressure[k] - old[k];
-    if (admissible[i].is_steep())
+    if (!is_of_dual && admissible[i].is_steep())
       steep.emplace(edge, steep_on(edge, pressure, given[i].length));
-    else
+    else if (!is_of_dual)
       for (double& value : pressure) value = std::max(0., value);
     at_ends[given[i].number] = pressure;
   }

@@ -43,6 +43,14 @@ struct ContactPressure {
   ContactPressure(const Discretization& discrete, const Eigen::MatrixXd& stress,
                   const Eigen::VectorXd& clearance);
 
+  /// p_τ of a dual problem: |p_τ| ≤ K p*, where p* is the pressure of the base. The factor K is the given
+  /// one, or as large as what each chain takes as a whole needs; infinite if that has no pressure.
+  ContactPressure(const Discretization& discrete, const Eigen::MatrixXd& stress, const ContactPressure& base,
+                  double factor);
+
+  /// The least K with |p_τ| ≤ K p*, p* of the base.
+  double factor_beside(const ContactPressure& base) const;
+
   /// Ψ on a triangle.
   Quadratic<1> stream_function_on(const Mesh& mesh, int t) const;
 
@@ -68,11 +76,19 @@ struct ContactPressure {
   /// ψ at points, for an elastic body.
   std::unordered_map<int, Airy> airy_at_points;
   std::vector<Lack> lacks;
+  bool is_of_dual = false;  ///< it may have any sign, and stays what it is
 
  private:
+  void spread(const Discretization& discrete, const ContactChain& given, const AdmissibleChain& chain,
+              double rounding);
   AdmissibleChain admissible(const Discretization& discrete, const ContactChain& given,
                              const Eigen::VectorXd& clearance, double rounding);
+  static AdmissibleChain within_bounds(const Discretization& discrete, const ContactChain& given,
+                                       const ContactChain& bounds, double factor, double rounding);
+  ContactChain with_own_forces(const Discretization& discrete, ContactChain chain) const;
   void keep(const Discretization& discrete, const ContactChain& given, const ContactChain& admissible);
+  void keep_steep(const ContactPressure& base, const Discretization& discrete);
+  void forget_rounding(const ContactPressure& base, double factor);
   void add_curl(const Discretization& discrete, const ContactChain& chain,
                 const std::vector<double>& at_nodes, const std::vector<double>& means);
   void take_lack(const Discretization& discrete, const ContactChain& links, double sign,

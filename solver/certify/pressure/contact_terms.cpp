@@ -35,7 +35,7 @@ ContactTerms::Work ContactTerms::work(const ContactPressure& pressure,
       const double s = begin + length * edge_rule().points[q];
       const double force = length_ * length * edge_rule().weights[q] * own(s);
       sum.value += force * (piece(s) - v.along_contact(contact_, s));
-      sum.radius += force * piece.remainder;
+      sum.radius += std::abs(force) * piece.remainder;
     }
   }
   return sum;

@@ -6,7 +6,7 @@
 
 namespace signorini {
 
-/// The integrals ∫ p* (g − v_n) over edge i of the clearance space, for pressures and displacements of one or
+/// The integrals ∫ p (g − v_n) over edge i of the clearance space, for pressures and displacements of one or
 /// of several pairs, with the same enclosure of g in all of them. They are 0 where that is not known to be
 /// finite, which AdmissibleDisplacement has refused.
 class ContactTerms {

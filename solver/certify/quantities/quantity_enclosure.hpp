@@ -6,7 +6,7 @@
 
 namespace signorini {
 
-/// Encloses quantities of a solution by the solutions of neighbouring problems: THEORY.md, Theorem 4.
+/// Encloses quantities of a solution by the solutions of their dual problems: THEORY.md, Theorem 4.
 class QuantityEnclosure {
  public:
   /// All must outlive it.
@@ -17,25 +17,14 @@ class QuantityEnclosure {
 
   struct Bounds {
     double lower, upper;
-    double way;  ///< x of Theorem 4, the larger one of both ends
     /// By triangles, the products of the errors that the width is made of, up to a factor.
     Eigen::VectorXd shares;
   };
-  /// `plus`, `minus`: of neighbour(problem, quantity, ±z), z > 0.
-  Bounds operator()(const Quantity& quantity, const CertifiedSolution& plus, const CertifiedSolution& minus,
-                    double z) const;
-  /// The same where 2 base − plus will do as `minus`: is_admissible_reflected().
-  Bounds reflected(const Quantity& quantity, const CertifiedSolution& plus, double z) const;
+  /// `dual`: of dual_problem(), with its dual_pair() beside that of the base. `size`: about how many times
+  /// the base is larger than it, so that no digits are lost where both are added up.
+  Bounds operator()(const CertifiedSolution& dual, double size) const;
 
  private:
-  /// What v and σ* of a solution count in a sum.
-  struct Term {
-    double of_displacement, of_stress;
-    const CertifiedSolution& solution;
-
-    Term operator+(double more) const { return {of_displacement + more, of_stress + more, solution}; }
-  };
-
   /// Of the fields that several pairs add up to.
   struct Sums {
     Eigen::VectorXd gaps;  ///< ‖C σ* − ε(v)‖²_E by triangles, from above
@@ -57,15 +46,19 @@ class QuantityEnclosure {
     return {factor * known.value, std::abs(factor) * known.radius};
   }
 
+  /// What a solution counts in a sum.
+  struct Term {
+    double factor;
+    const CertifiedSolution& solution;
+  };
+
   template <int D>
-  Sums sums_of(const Discretization& loads, const std::vector<Term>& terms) const;
-  Sums sums(const Discretization& loads, const std::vector<Term>& terms) const;
+  Sums sums_of(const std::vector<Term>& terms, const LoadProjection& load) const;
+  Sums sums(const std::vector<Term>& terms, const LoadProjection& load) const;
   Known work_of_traction(const Discretization& loads, const AdmissibleDisplacement& v) const;
-  Known work_of_loads(const Discretization& loads, const Sums& of_v) const;
-  Known contact_work(const CertifiedSolution& of_pressure) const;
-  double unbalanced_between(const CertifiedSolution& other, bool have_same_loads, Eigen::VectorXd& o) const;
-  Known along(const Quantity& quantity, const Term& start, const Term& of_stress, const Term& of_displacement,
-              double& way, Eigen::VectorXd& shares) const;
+  Known contact_work(const ContactPressure& pressure) const;
+  double beyond_base(const CertifiedSolution& dual) const;
+  double largest_rest(double x, double factor) const;
 
   const CertifiedSolution& base_;
   const LawOnMesh& laws_;

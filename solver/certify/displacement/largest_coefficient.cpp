@@ -1,0 +1,26 @@
+#include "certify/displacement/largest_coefficient.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace signorini {
+
+/// Short parts tell more: they become shorter until less than `small` is left, or as long as that helps.
+double largest_coefficient(const Field& field, const EdgeLine& line, int order, double small) {
+  constexpr int kMostCuts = 256;
+  double known = std::numeric_limits<double>::infinity();
+  for (int cuts = 4; cuts <= kMostCuts; cuts *= 4) {
+    double most = 0;
+    for (int i = 0; i < cuts; ++i) {
+      const Interval own = series_on(field, line, Interval(1. * i / cuts, (i + 1.) / cuts), order)[order];
+      most = std::max(most, is_known(own) ? largest(own) : std::numeric_limits<double>::infinity());
+    }
+    const bool helps = most < 0.9 * known;
+    known = std::min(known, most);
+    if (known <= small || (!helps && std::isfinite(known))) break;
+  }
+  return known;
+}
+
+}  // namespace signorini

@@ -1,0 +1,43 @@
+#include "run/dual_solution.hpp"
+
+#include <utility>
+
+#include "contact/complete.hpp"
+#include "contact/dual_contact.hpp"
+#include "system/hybrid_system.hpp"
+
+namespace signorini {
+
+DualSolution::DualSolution(const CondensedProblem& base, const Quantity& quantity, Progress& progress)
+    : base_(base),
+      problem_(dual_problem(base.discretization().problem, quantity)),
+      discretization_(problem_, base.discretization().mesh,
+                      LoadProjection(problem_, base.discretization().mesh, &progress), &progress,
+                      ClearanceOf::change),
+      condensed_(*base.used_operator(), assemble_right(discretization_, progress), progress) {}
+
+void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progress& progress) {
+  const DualContact contact =
+      dual_contact(base_.contact(), clearance, condensed_.contact().c, factor, progress);
+  Completed all = complete(discretization_, condensed_, contact.clearance, contact.open, progress);
+  largest_factor_ = contact.largest_factor;
+  coupling_ = std::move(all.coupling);
+  solution_.stress = std::move(all.fields.stress);
+  solution_.displacement = std::move(all.fields.displacement);
+  solution_.rotation = discretization_.traces.rotation(coupling_);
+  const Eigen::VectorXd on_rows = discretization_.clearance.clearance(contact.clearance);
+  solution_.summary.residuals =
+      residuals(solution_, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discretization_);
+}
+
+CertifiedSolution DualSolution::certified(const CertifiedSolution& base, double factor, const LawOnMesh& laws,
+                                          Progress& progress) const {
+  return {discretization_,
+          solution_,
+          dual_pair(discretization_, solution_, coupling_, base.pair, factor, progress),
+          laws,
+          progress,
+          &base};
+}
+
+}  // namespace signorini
