@@ -68,6 +68,7 @@ class LinearContact {
   }
 
   DualContact take() {
+    std::erase_if(open_, [this](int i) { return given_[i] != 0; });
     const double most = largest_factor();
     return {std::move(own_), std::move(open_), most};
   }

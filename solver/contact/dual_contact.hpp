@@ -10,7 +10,7 @@ namespace signorini {
 /// is closed and no force where it is open.
 struct DualContact {
   Eigen::VectorXd clearance;
-  std::vector<int> open;  ///< the unknowns whose force is given
+  std::vector<int> open;  ///< the unknowns without a force
   double largest_factor;  ///< the most that the force on one of the others is of that of the base
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "certify/quantities/certified_solution.hpp"
 #include "run/condensed_problem.hpp"
 
@@ -18,10 +21,16 @@ class DualSolution {
   /// Solves it. `clearance`: of the base. Forces of contact are held at `factor` times those of the base.
   void solve(const Eigen::VectorXd& clearance, double factor, Progress& progress);
 
-  /// What the forces of contact that are not held are of those of the base at most.
-  double largest_factor() const { return largest_factor_; }
+  /// Another solve with this factor would hold other forces.
+  bool is_beyond(double factor) const {
+    return factor != factor_ && (largest_factor_ > factor || std::isfinite(factor_));
+  }
+
   const Eigen::MatrixXd& stress() const { return solution_.stress; }
-  const Eigen::MatrixXd& displacement() const { return solution_.displacement; }
+  /// max |η| in the body, and of the clearances.
+  double largest_displacement() const {
+    return std::max(solution_.displacement.lpNorm<Eigen::Infinity>(), clearance_.lpNorm<Eigen::Infinity>());
+  }
 
   /// With the pair beside that of the base: `factor` is that of dual_pair(). Refers to this.
   CertifiedSolution certified(const CertifiedSolution& base, double factor, const LawOnMesh& laws,
@@ -31,9 +40,11 @@ class DualSolution {
   const CondensedProblem& base_;
   Problem problem_;
   Discretization discretization_;
+  const Eigen::VectorXd right_;
   CondensedContact condensed_;
-  double largest_factor_ = 0;
-  Eigen::VectorXd coupling_;
+  const bool has_loads_;
+  double factor_ = 0, largest_factor_ = 0;
+  Eigen::VectorXd coupling_, clearance_;
   Solution solution_;
 };
 

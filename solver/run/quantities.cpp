@@ -29,9 +29,12 @@ double best_factor(double r, double relative_size) {
   return relative_size * std::pow(std::max(r, kLeastRadius), -2. / 3);
 }
 
-/// 1 where there is nothing to compare.
+/// Where K turns out to be so much smaller than x / R, x is larger than it must be.
+constexpr double kMuchTooSmall = 0.3;
+
+/// 1 where there is nothing to compare with.
 double ratio(double one, double other) {
-  return one > 0 && other > 0 ? one / other : 1;
+  return other > 0 ? one / other : 1;
 }
 
 /// In words: the quantity depends on more than the energy.
@@ -174,22 +177,43 @@ class Encloser {
     const double r = size_ > 0 ? enclosure_.radius() / size_ : 0;
     dual.solve(fields_.clearance, std::numeric_limits<double>::infinity(), progress_);
     const double by_stress = ratio(norm_of(dual.stress(), discrete()), size_),
-                 by_displacement = ratio(dual.displacement().lpNorm<Eigen::Infinity>(),
-                                         solution_.displacement.lpNorm<Eigen::Infinity>()),
-                 factor = best_factor(r, std::max(by_stress, r * by_displacement));
-    if (dual.largest_factor() > factor) dual.solve(fields_.clearance, factor, progress_);
-    const CertifiedSolution of_dual = dual.certified(base_, factor, laws_, progress_);
-    if (const auto& unmet = of_dual.pair.v.unmet(); !unmet.empty())
-      return add({kUnbounded + unmet.front()}, own.unmet);
-    add(of_dual.unmet, own.unmet);
-    QuantityEnclosure::Bounds found = enclosure_(of_dual, 1 / std::max(by_stress, by_displacement));
-    if (!std::isfinite(found.upper - found.lower))
+                 by_displacement = ratio(dual.largest_displacement(),
+                                         std::max(solution_.displacement.lpNorm<Eigen::Infinity>(),
+                                                  fields_.clearance.lpNorm<Eigen::Infinity>())),
+                 factor = best_factor(r, std::max(by_stress, r * by_displacement)),
+                 most = std::max(by_stress, by_displacement), size = most > 0 ? 1 / most : 1;
+    std::vector<std::string> unmet;
+    QuantityEnclosure::Bounds found = bounds(dual, factor, size, unmet);
+    if (found.factor < kMuchTooSmall * found.free_factor) {
+      std::vector<std::string> other_unmet;
+      QuantityEnclosure::Bounds other = bounds(dual, found.free_factor, size, other_unmet);
+      if (other.upper - other.lower < found.upper - found.lower) {
+        found = std::move(other);
+        unmet = std::move(other_unmet);
+      }
+    }
+    add(unmet, own.unmet);
+    if (!std::isfinite(found.upper - found.lower) && unmet.empty())
       return add({kUnbounded + "the contact touches without a pressure"}, own.unmet);
     own.lower = found.lower;
     own.upper = found.upper;
     // The largest that there is in memory, and asked for by a mesh that refines itself alone.
     const std::optional<Adaptive>& adaptive = discrete().problem.mesh.adaptive;
     if (adaptive && adaptive->quantity == quantity.name) own.shares = std::move(found.shares);
+  }
+
+  /// With a K of about this factor; `unmet` tells why they do not count.
+  QuantityEnclosure::Bounds bounds(DualSolution& dual, double factor, double size,
+                                   std::vector<std::string>& unmet) {
+    if (dual.is_beyond(factor)) dual.solve(fields_.clearance, factor, progress_);
+    const CertifiedSolution of_dual = dual.certified(base_, factor, laws_, progress_);
+    if (const auto& refused = of_dual.pair.v.unmet(); !refused.empty()) {
+      unmet = {kUnbounded + refused.front()};
+      constexpr double anything = std::numeric_limits<double>::infinity();
+      return {-anything, anything, 0, anything, {}};
+    }
+    unmet = of_dual.unmet;
+    return enclosure_(of_dual, size);
   }
 
   const CondensedProblem& condensed_;

@@ -157,7 +157,8 @@ QuantityEnclosure::Bounds QuantityEnclosure::operator()(const CertifiedSolution&
   const double radius = sum.radius / z +
                         (base_.unbalanced() * x + std::sqrt(own_.gaps.sum()) * dual.unbalanced()) / 2 +
                         beyond_base(dual) + largest_rest(x, factor);
-  return {sum.value / z - radius, sum.value / z + radius, of_base.cwiseProduct(of_dual)};
+  return {sum.value / z - radius, sum.value / z + radius, radius_ > 0 ? x / radius_ : 0, factor,
+          of_base.cwiseProduct(of_dual)};
 }
 
 }  // namespace signorini

@@ -17,6 +17,8 @@ class QuantityEnclosure {
 
   struct Bounds {
     double lower, upper;
+    double free_factor;  ///< x / R, up to which K costs nothing
+    double factor;       ///< K
     /// By triangles, the products of the errors that the width is made of, up to a factor.
     Eigen::VectorXd shares;
   };
