@@ -1,6 +1,6 @@
 #include "contact/cone.hpp"
 
-#include <Eigen/QR>
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -17,7 +17,7 @@ Eigen::VectorXd beyond_cone(const std::vector<Eigen::VectorXd>& generators, cons
   const auto fit = [&] {
     Eigen::MatrixXd columns(target.size(), basis.size());
     for (std::size_t k = 0; k < basis.size(); ++k) columns.col(k) = generators[basis[k]];
-    const Eigen::VectorXd fitted = columns.colPivHouseholderQr().solve(target);
+    const Eigen::VectorXd fitted = least_squares(columns, target);
     residual = target - columns * fitted;
     return fitted;
   };

@@ -3,10 +3,9 @@
 #include <cmath>
 #include <sstream>
 
-#include <Eigen/Eigenvalues>
-
 #include "contact/cone.hpp"
 #include "fem/rigid_frame.hpp"
+#include "fem/small_matrices.hpp"
 #include "mesh/bodies.hpp"
 #include "progress/observer.hpp"
 
@@ -169,11 +168,9 @@ class Conditions {
   Motions fulfilled_by(const Motions& motions) const {
     if (count_ == 0) return motions;
     const Eigen::MatrixXd reduced = motions.transpose() * square_ * motions / count_;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
-    std::vector<int> null;
-    for (int i = 0; i < eigen.eigenvalues().size(); ++i)
-      if (eigen.eigenvalues()[i] < 1e-12) null.push_back(i);
-    return motions * eigen.eigenvectors()(Eigen::all, null);
+    const Spectrum spectrum(reduced);
+    // The eigenvalues ascend.
+    return motions * spectrum.vectors.leftCols((spectrum.values.array() < 1e-12).count());
   }
 
  private:

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
 #include "fem/rigid_frame.hpp"
+#include "fem/small_matrices.hpp"
 #include "mesh/bisect.hpp"
 #include "mesh/bodies.hpp"
 
@@ -81,14 +80,14 @@ double seen_part(const Mesh& mesh, const Supports& supports) {
       for (const int point : mesh.edges[edge]) add(prevented, 1. / 6, direction, mesh.points[point]);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(prevented);
-  const Eigen::Vector3d& values = eigen.eigenvalues();
-  Eigen::Matrix3d scaled = eigen.eigenvectors();
+  const Spectrum spectrum(prevented);
+  const Eigen::Vector3d values = spectrum.values;
+  Eigen::Matrix3d scaled = spectrum.vectors;
   int free = 0;
   for (; values[free] < 1e-12 * values[2]; ++free) scaled.col(free).setZero();
   for (int i = free; i < 3; ++i) scaled.col(i) /= std::sqrt(values[i]);
   const Eigen::Matrix3d part = scaled.transpose() * seen * scaled;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(part).eigenvalues()[free];
+  return eigenvalues(part)[free];
 }
 
 constexpr double least_part_seen = 0.25;

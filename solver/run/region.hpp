@@ -35,15 +35,15 @@ struct Piece {
 };
 
 /// The rectangle around points, with sides along the axes.
-struct Box {
+struct Extent {
   Point low, high;
 
-  explicit Box(const Piece& piece) : low(piece.a.cwiseMin(piece.b)), high(piece.a.cwiseMax(piece.b)) {}
-  explicit Box(const std::vector<Piece>& pieces) : Box(pieces.front()) {
+  explicit Extent(const Piece& piece) : low(piece.a.cwiseMin(piece.b)), high(piece.a.cwiseMax(piece.b)) {}
+  explicit Extent(const std::vector<Piece>& pieces) : Extent(pieces.front()) {
     for (const Piece& piece : pieces) low = low.cwiseMin(piece.a), high = high.cwiseMax(piece.a);
   }
 
-  bool meets(const Box& other) const {
+  bool meets(const Extent& other) const {
     return low.x() <= other.high.x() && other.low.x() <= high.x() && low.y() <= other.high.y() &&
            other.low.y() <= high.y();
   }
@@ -96,12 +96,12 @@ class Region {
   /// Its corners lie in the body, no side crosses the boundary, and no hole lies within.
   bool contains(const Outline& outline) const {
     const std::vector<Piece> sides = sides_of(outline.corners);
-    const Box around(sides);
+    const Extent around(sides);
     for (std::size_t i = 0; i < boundary_.size(); ++i) {
-      const Box own(boundary_[i]);
+      const Extent own(boundary_[i]);
       if (!own.meets(around)) continue;
       const auto is_crossed_by = [&](const Piece& side) {
-        return own.meets(Box(side)) && side.crosses(boundary_[i]);
+        return own.meets(Extent(side)) && side.crosses(boundary_[i]);
       };
       // Of an edge that lies on a side rounding tells nothing, and of the next one across neither.
       if (std::ranges::any_of(sides, is_crossed_by) || is_within(sides, outside_[i])) return false;

@@ -2,18 +2,16 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
 
 /// The norm of the map from the data of an element to the L2 norm of the stress on the reference triangle.
 double norm_of(const Eigen::MatrixXd& rows) {
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues()[0];
+  return std::sqrt(eigenvalues(rows.transpose() * rows).maxCoeff());
 }
 
 double norm_of_membrane_element() {
@@ -181,8 +179,7 @@ class Carrier {
       const Eigen::VectorXd own = motions_along(middle(side.edge), side.direction);
       matrix += side.force / 2 * own * own.transpose();
     }
-    const double least =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double least = eigenvalues(matrix)[0];
     double resultant = 0;
     for (int t = 0; t < discrete_.triangles(); ++t) {
       const double distance = (mesh_.centroid(t) - mesh_.points[0]).norm() + size(t);

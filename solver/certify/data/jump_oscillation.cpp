@@ -9,6 +9,7 @@
 #include "certify/data/local_equilibrium.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/projection.hpp"
+#include "fem/small_matrices.hpp"
 #include "mesh/refine.hpp"
 
 namespace signorini {
@@ -38,12 +39,12 @@ class PiecewiseLoads {
                        kCuts<D>)) {
     const LocalEquilibrium<D> stresses(pieces_);
     linear_ = stresses.linear;
-    onto_linear_ =
-        (linear_.transpose() * stresses.mass * linear_).inverse() * linear_.transpose() * stresses.mass;
+    const Eigen::MatrixXd moments = linear_.transpose() * stresses.mass;
+    onto_linear_ = solve_definite(moments * linear_, moments);
     // The least zᵀ energy z with loads z = r is rᵀ S⁺ r, S = loads energy⁻¹ loadsᵀ. S is 0 on the work of
     // rigid motions, which r does not do.
     const Eigen::MatrixXd work = stresses.mass * rigid(linear_);
-    const Eigen::MatrixXd own = stresses.loads * stresses.energy.llt().solve(stresses.loads.transpose());
+    const Eigen::MatrixXd own = stresses.loads * solve_definite(stresses.energy, stresses.loads.transpose());
     root_.compute(own + own.trace() / work.squaredNorm() * work * work.transpose());
   }
 

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "fem/quadrature.hpp"
 #include "fem/raviart_thomas.hpp"
+#include "fem/small_matrices.hpp"
 #include "problem/fields.hpp"
 
 namespace signorini {
@@ -171,22 +171,21 @@ double radius_of(const EnclosedMatrix<N, Value>& matrix) {
 }
 
 /// All eigenvalues of the matrices that are enclosed.
-struct Spectrum {
+struct EnclosedSpectrum {
   double lowest = kInfinity, highest = -kInfinity;
 
   template <int N, typename Value>
   void add(const EnclosedMatrix<N, Value>& matrix) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> own(middle_of(matrix),
-                                                                         Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd own = eigenvalues(middle_of(matrix));
     const double radius = radius_of(matrix);
-    lowest = std::min(lowest, own.eigenvalues().minCoeff() - radius);
-    highest = std::max(highest, own.eigenvalues().maxCoeff() + radius);
+    lowest = std::min(lowest, own[0] - radius);
+    highest = std::max(highest, own[N - 1] + radius);
   }
 };
 
 /// N = T E Tᵀ and its inverse against polynomials, relative to what they are at least.
 template <int N, typename Value>
-Errors errors_of(const EnclosedMatrix<N, Value>& relative, const Spectrum& spectrum) {
+Errors errors_of(const EnclosedMatrix<N, Value>& relative, const EnclosedSpectrum& spectrum) {
   const std::optional<EnclosedMatrix<N, Value>> inverse = relative.inverse();
   Errors errors = unknown().errors;
   for (int k = 0; inverse && k < kOrders; ++k) {
@@ -215,7 +214,7 @@ Quality quality(const std::optional<EnclosedMatrix<N, Series>>& series,
   if (!largest_entries.allFinite() || factor.info() != Eigen::Success) return unknown();
   const Numbers t = Numbers(factor.matrixL()).inverse();
 
-  Spectrum spectrum;
+  EnclosedSpectrum spectrum;
   std::vector<EnclosedMatrix<N, TaylorModel>> relative;
   for (const auto& own : branches) relative.push_back(own.congruent(t));
   for (const auto& own : relative) spectrum.add(own);
@@ -228,8 +227,7 @@ Quality quality(const std::optional<EnclosedMatrix<N, Series>>& series,
   spectrum.highest += rounding;
   if (!(spectrum.lowest > 0)) return unknown();
 
-  const double softest = Eigen::SelfAdjointEigenSolver<Numbers>(t.transpose() * t).eigenvalues().maxCoeff(),
-               stiffest = Eigen::SelfAdjointEigenSolver<Numbers>(middle).eigenvalues().maxCoeff();
+  const double softest = eigenvalues(t.transpose() * t)[N - 1], stiffest = eigenvalues(middle)[N - 1];
   Quality all{unknown().errors, softest / spectrum.lowest, spectrum.highest * stiffest};
   // Against 0, and against the constant in the middle.
   all.errors.fill((spectrum.highest / spectrum.lowest - 1) / 2);
@@ -377,8 +375,7 @@ void take_as_in_points(const Material& material, const std::array<Point, 3>& cor
   piece.errors.fill(0);
   piece.softest = piece.stiffest = 0;
   for (const Point& reference : triangle_rule().points) {
-    const Eigen::MatrixXd compliance = compliance_at(material, map(piece.place(reference)));
-    const Eigen::VectorXd own = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance).eigenvalues();
+    const Eigen::VectorXd own = eigenvalues(compliance_at(material, map(piece.place(reference))));
     piece.softest = std::max(piece.softest, own.maxCoeff());
     piece.stiffest = std::max(piece.stiffest, 1 / own.minCoeff());
   }

@@ -5,14 +5,13 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "certify/displacement/displacement_relaxation.hpp"
 #include "certify/displacement/gap_bubble.hpp"
 #include "certify/displacement/largest_coefficient.hpp"
 #include "certify/displacement/recovered_displacement.hpp"
 #include "certify/displacement/relaxation.hpp"
 #include "fem/edge_pieces.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -31,8 +30,7 @@ Eigen::VectorXd value_of(const VectorField& field, int components, const Point& 
 
 /// Of the stiffness against changes of volume and of shape, 1 / (1 − 2ν) for an isotropic body.
 double ratio_of_stiffnesses(const Material& material, const Point& x) {
-  const Eigen::VectorXd compliances =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(compliance_at(material, x)).eigenvalues();
+  const Eigen::VectorXd compliances = eigenvalues(compliance_at(material, x));
   return compliances.maxCoeff() / compliances.minCoeff();
 }
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 
-#include <Eigen/Cholesky>
-
 #include "certify/data/balanced_load.hpp"
 #include "certify/displacement/star_relaxation.hpp"
 #include "certify/elasticity/johnson_mercier.hpp"
 #include "certify/local_fields.hpp"
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -101,10 +100,9 @@ Condensed condensed(const AffineMap& map, bool is_constant, LawField<2>& law) {
         for (int i = 0; i < kNodes; ++i)
           for (int j = 0; j < kNodes; ++j) all(2 * i + p, 2 * j + q) += sum(i, j);
       }
-  const Eigen::LLT<Eigen::Matrix<double, 2 * kFollowing, 2 * kFollowing>> inner(
-      all.bottomRightCorner<2 * kFollowing, 2 * kFollowing>());
   Condensed own;
-  own.follows = inner.solve(all.bottomLeftCorner<2 * kFollowing, 2 * kOuter>());
+  own.follows = solve_definite(all.bottomRightCorner<2 * kFollowing, 2 * kFollowing>(),
+                               all.bottomLeftCorner<2 * kFollowing, 2 * kOuter>());
   own.stiffness = all.topLeftCorner<2 * kOuter, 2 * kOuter>() -
                   all.topRightCorner<2 * kOuter, 2 * kFollowing>() * own.follows;
   return own;

@@ -187,13 +187,15 @@ class Minimization {
       const auto& corners = mesh_.triangles[t];
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
       const AffineMap map(mesh_.corners(t));
-      Eigen::Matrix<double, JohnsonMercier::kData, kAiryColumns> data;
+      // (ψ, ∇ψ) at three corners, and what is there.
+      constexpr int columns = 10;
+      Eigen::Matrix<double, JohnsonMercier::kData, Eigen::Dynamic> data(JohnsonMercier::kData, columns);
       data << data_of_airy(t, map), johnson_mercier_data(discrete_, tractions, t, map);
-      Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> coefficients(stress.rows(), kAiryColumns);
+      Eigen::MatrixXd coefficients(stress.rows(), columns);
       coefficients << Eigen::MatrixXd::Zero(stress.rows(), 9), stress.col(t);
       const std::vector<SymmetricLaw> laws = laws_at(discrete_, rule, map, law);
-      const JohnsonMercierStress<kAiryColumns> sigma(rule, map, data, coefficients, laws);
-      const auto corrections = correction(rule, map, sigma, laws);
+      const JohnsonMercierStress<Eigen::Dynamic> sigma(rule, map, data, coefficients, laws);
+      const Eigen::MatrixXd corrections = correction(rule, map, sigma, laws);
       const auto changes = corrections.leftCols<9>();
       const Eigen::Matrix<double, 9, 9> own = 2 * changes.transpose() * changes;
       const Eigen::Matrix<double, 9, 1> towards = 2 * changes.transpose() * corrections.col(9);

@@ -160,6 +160,12 @@ JohnsonMercier make() {
 
 }  // namespace
 
+Eigen::Vector3d JohnsonMercier::stress(
+    const Place& place, const Eigen::Ref<const Eigen::Vector<double, kStresses>>& coefficients) {
+  const Eigen::Map<const Eigen::Matrix<double, 3, 6>> pieces(coefficients.data() + 18 * place.part);
+  return pieces * place.piece_basis + place.bubbles * coefficients.tail<kBubbles>();
+}
+
 Point JohnsonMercier::node(int number) {
   if (number < 3) return corner(number);
   if (number < 6) return (corner(number - 2) + corner(number - 1)) / 2;

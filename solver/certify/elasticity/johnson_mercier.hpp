@@ -57,12 +57,8 @@ struct JohnsonMercier {
                                    const std::array<Point, 3>& triangle);
 
   /// (xx, yy, xy) of the stress with the given coefficients.
-  template <typename Coefficients>
-  static Eigen::Vector3d stress(const Place& place, const Coefficients& coefficients) {
-    return coefficients.template segment<18>(18 * place.part).template reshaped<Eigen::ColMajor>(3, 6) *
-               place.piece_basis +
-           place.bubbles * coefficients.template tail<kBubbles>();
-  }
+  static Eigen::Vector3d stress(const Place& place,
+                                const Eigen::Ref<const Eigen::Vector<double, kStresses>>& coefficients);
 
   /// The node with the given number.
   static Point node(int number);

@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include "fem/small_matrices.hpp"
+
 namespace signorini {
 namespace {
 
@@ -149,7 +151,7 @@ JohnsonMercierStress<Columns>::JohnsonMercierStress(const JohnsonMercierRule& ru
     free_matrix += weighted * own;
     free_right += weighted * (discrete[q] - admissible[q]);
   }
-  const Block<kFree> free = free_matrix.ldlt().solve(free_right);
+  const Block<kFree> free = solve_definite(free_matrix, free_right);
   for (int q = 0; q < rule.size(); ++q) admissible[q] += (to_triangle * rule.values[q].free).eval() * free;
 }
 
@@ -191,7 +193,7 @@ JohnsonMercierOperators<Columns>::JohnsonMercierOperators(const JohnsonMercierRu
     inner_matrix += weighted * own;
     inner_right += weighted * (law.compliance * sigma.admissible[q] - strains_of_v[q]);
   }
-  inner = inner_matrix.ldlt().solve(inner_right);
+  inner = solve_definite(inner_matrix, inner_right);
 
   gap.resize(3 * points, columns);
   direct_gap.resize(3 * points, columns);
@@ -214,10 +216,10 @@ JohnsonMercierOperators<Columns>::JohnsonMercierOperators(const JohnsonMercierRu
   }
 }
 
-template struct JohnsonMercierStress<kAiryColumns>;
-template Eigen::Matrix<double, Eigen::Dynamic, kAiryColumns> correction(
-    const JohnsonMercierRule&, const AffineMap&, const JohnsonMercierStress<kAiryColumns>&,
-    std::span<const SymmetricLaw>);
+template struct JohnsonMercierStress<Eigen::Dynamic>;
+template Eigen::MatrixXd correction(const JohnsonMercierRule&, const AffineMap&,
+                                    const JohnsonMercierStress<Eigen::Dynamic>&,
+                                    std::span<const SymmetricLaw>);
 template struct JohnsonMercierOperators<1>;
 template struct JohnsonMercierOperators<Eigen::Dynamic>;
 

@@ -80,9 +80,6 @@ struct JohnsonMercierStress {
   Block<Eigen::Dynamic> skew;  ///< of σ_h: a row a point
 };
 
-/// (ψ, ∇ψ) at three corners, and what is there.
-constexpr int kAiryColumns = 10;
-
 /// √weight (σ* − the symmetric part of σ_h) in the norm of C, the rows of all points.
 template <int Columns>
 Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,

@@ -1,11 +1,10 @@
 #include "certify/elasticity/traction_relaxation.hpp"
 
-#include <Eigen/Cholesky>
-
 #include "certify/displacement/star_relaxation.hpp"
 #include "certify/elasticity/johnson_mercier_data.hpp"
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "fem/per_shape.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -130,9 +129,9 @@ TractionShape traction_shape_of(const Discretization& discrete, int t, LawField<
       map.determinant * to_triangle.transpose() *
       mean_compliance(map, discrete.element.has_constant_material(), law) * to_triangle);
   const auto airy = linear_of_airy(map, corners);
-  const Eigen::LLT<Eigen::Matrix<double, kFree, kFree>> free(products.bottomLeftCorner<kFree, kFree>());
   const Eigen::Matrix<double, kLinear, kFree> of_free = products.topLeftCorner<kLinear, kFree>();
-  const Eigen::Matrix<double, kFree, kLinear> follows = free.solve(of_free.transpose());
+  const Eigen::Matrix<double, kFree, kLinear> follows =
+      solve_definite(products.bottomLeftCorner<kFree, kFree>(), of_free.transpose());
   const auto given = products.rightCols(products.cols() - kFree);
   const auto all =
       (airy.transpose() * (given.topRows<kLinear>() - follows.transpose() * given.bottomRows<kFree>()))

@@ -1,9 +1,8 @@
 #include "certify/membrane/quadratic_balance.hpp"
 
-#include <Eigen/QR>
-
 #include "certify/data/balanced_load.hpp"
 #include "fem/lagrange.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -52,7 +51,7 @@ Eigen::Matrix<double, kBalanceData, kBalanceData> functions_of_data() {
     const Point& x = triangle_rule().points[q];
     data.bottomRows<1>() += triangle_rule().weights[q] * curl_of_bubble(x).transpose() * functions(x);
   }
-  return data.colPivHouseholderQr().solve(Eigen::Matrix<double, kBalanceData + 1, kBalanceData>::Identity());
+  return least_squares(data, Eigen::MatrixXd::Identity(data.rows(), data.cols()));
 }
 
 }  // namespace
