@@ -108,6 +108,7 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
     totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions), owners,
                   progress);
   }
+  if (totals.endless_gap) unmet.push_back(*totals.endless_gap);
   CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
   const bool is_little = carried.norm <= kLittle * bound_from(totals).value;

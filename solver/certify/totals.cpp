@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "certify/data/oscillation.hpp"
 #include "certify/pressure/contact_terms.hpp"
@@ -47,6 +46,12 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
     budget.share(edges - i, [&](CellBudget& part) { of_edge.emplace(discrete, pair.v, i, part); });
     const ContactTerms& terms = *of_edge;
     const double own = terms(pair.pressure, pair.v);
+    if (!std::isfinite(own)) {
+      const ContactEdge& edge = discrete.clearance.edges[i];
+      endless_gap = gap_on(discrete, edge).name() + " is not known to be finite near " +
+                    to_string(EdgeLine(discrete.mesh, edge.edge).at(0.5)) +
+                    ", where the body presses on it: lower it there";
+    }
     contact += own;
     shares[owner] += own;
     if (second) all.known += terms(pair.pressure, second->v) + terms(second->pressure, pair.v) - 2 * own;

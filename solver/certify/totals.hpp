@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "certify/data/carried_loads.hpp"
 #include "certify/triangle_sums.hpp"
 
@@ -26,6 +29,7 @@ struct Totals {
   double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)² over the triangles
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
   double carried = 0;  ///< the norm of the stress that carries uncertain loads
+  std::optional<std::string> endless_gap;  ///< where p* acts on a gap that is not known to be finite
   /// The second pair is one with the same uncertain loads: not if p* had to change for them.
   bool second_counts = true;
   Eigen::VectorXd shares;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "mesh/meeting_boxes.hpp"
 #include "mesh/segments.hpp"
@@ -35,6 +36,7 @@ class Count {
     for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge)
       edges_.emplace_back(unit.edge(edge));
     sort_by_edge(near);
+    found_.stretches.reserve(edges_.size());
   }
 
   NarrowPlaces run() {
@@ -50,7 +52,7 @@ class Count {
       found_.edge = edge;
       found_.opposite = opposite_;
     }
-    return found_;
+    return std::move(found_);
   }
 
  private:
@@ -137,11 +139,13 @@ class Count {
 
 EdgePairs near_edges(const Rings& unit, std::size_t most) {
   std::vector<Box> boxes;
+  boxes.reserve(unit.points.size());
   for (int edge = 0; edge < static_cast<int>(unit.points.size()); ++edge) {
     const Segment ends = unit.edge(edge);
     boxes.push_back(box_around(ends, (ends[1] - ends[0]).norm() / 2));
   }
   EdgePairs pairs;
+  pairs.reserve(most);
   for_each_meeting_pair(boxes, [&](int i, int j) {
     pairs.push_back({i, j});
     return pairs.size() < most;

@@ -110,6 +110,8 @@ std::array<double, 2> enclose_opening(const Quantity& quantity, const CertifiedS
         all.value += value;
         all.radius += known;
       });
+  if (!std::isfinite(all.radius))
+    unmet.push_back("the gap or the weight is not known to be finite where the opening is asked for");
   return {all.value - all.radius - off, all.value + all.radius + off};
 }
 

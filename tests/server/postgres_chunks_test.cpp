@@ -15,8 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using postgres::Connection;
 
-constexpr auto lease = 300ms;
-
 class PostgresChunks : public testing::Test {
  protected:
   PostgresChunks() = default;
@@ -56,7 +54,7 @@ class PostgresChunks : public testing::Test {
 
   const std::string url_ = empty_database();
   const StoreLimits limits_{2, plenty, std::chrono::hours(1)};
-  postgres::Store a_{url_, limits_, lease}, b_{url_, limits_, lease};
+  postgres::Store a_{url_, limits_}, b_{url_, limits_};
   Fleet& fleet_ = *a_.fleet();
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "fem/traction_field.hpp"
@@ -122,6 +123,41 @@ TEST(RoughData, AGapThatFallsFromASupportLikeARootIsMet) {
   problem.boundary = {
       {"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Contact{problems::formula("sqrt(x)")}}};
   EXPECT_LE(relative_bound(problem), 0.45);
+}
+
+/// It is admissible to stay below it, and still not known what the pressure does on it.
+TEST(RoughData, AGapThatRisesWithoutBoundWhereABodyPressesHasNoBound) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const int n : {1, 2}) {
+      Problem problem = square();
+      problem.scheme = scheme;
+      problem.mesh.fineness = Divisions{n, n};
+      problem.body = Field(-5);
+      problem.boundary = {{"top", Fixed{}},
+                          {"bottom", Contact{problems::formula("-0.1*log(abs(x-0.3711))")}}};
+      const Solution solution = solve(problem, {ActiveSet{}, {}});
+      EXPECT_FALSE(solution.summary.error_bound) << n;
+      EXPECT_THAT(solution.summary.notes,
+                  testing::Contains(testing::HasSubstr("is not known to be finite near")));
+    }
+}
+
+/// A root is finite where its slope is not.
+TEST(RoughData, AGapWithACuspIsEnclosed) {
+  const auto bound = [](int n) {
+    Problem problem = square();
+    problem.mesh.fineness = Divisions{n, n};
+    problem.body = Field(-5);
+    problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{problems::formula("0.1*sqrt(abs(x-0.3711))")}}};
+    return *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+  };
+  const ErrorBound fine = bound(64);
+  for (const int n : {1, 2, 8}) {
+    const ErrorBound coarse = bound(n);
+    EXPECT_TRUE(coarse.guaranteed);
+    EXPECT_LE(coarse.energy_lower, fine.energy_upper) << n;
+    EXPECT_GE(coarse.energy_upper, fine.energy_lower) << n;
+  }
 }
 
 /// A polynomial that follows it would rise above the rest of the body by many powers of ten.

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "certify/rounding.hpp"
 
 namespace signorini {
 namespace {
 
 /// What g − p may be in the mean, relative to v.
 constexpr double kMeanTolerance = 1e-10;
+
+constexpr ContactTerms::Work unknown{0, std::numeric_limits<double>::infinity()};
 
 }  // namespace
 
@@ -21,8 +26,6 @@ ContactTerms::ContactTerms(const Discretization& discrete, const AdmissibleDispl
                       std::abs(v.along_contact(contact_, 1));
   pieces_ = pieces_on_edge(gap_on(discrete, contact_), EdgeLine(discrete.mesh, contact_.edge),
                            kMeanTolerance * size, budget);
-  const auto is_finite = [](const EdgePiece& piece) { return std::isfinite(piece.remainder); };
-  if (!std::ranges::all_of(pieces_, is_finite)) pieces_.clear();
 }
 
 ContactTerms::Work ContactTerms::work(const ContactPressure& pressure,
@@ -34,6 +37,8 @@ ContactTerms::Work ContactTerms::work(const ContactPressure& pressure,
     for (int q = 0; length > 0 && q < EdgeRule::size; ++q) {
       const double s = begin + length * edge_rule().points[q];
       const double force = length_ * length * edge_rule().weights[q] * own(s);
+      if (force == 0) continue;
+      if (!std::isfinite(piece.remainder)) return unknown;
       sum.value += force * (piece(s) - v.along_contact(contact_, s));
       sum.radius += std::abs(force) * piece.remainder;
     }
@@ -58,12 +63,15 @@ ContactTerms::Work ContactTerms::opening(const Field& weight, const AdmissibleDi
   for (const EdgePiece& w : pieces_on_edge(weight, line, kMeanTolerance * size, budget))
     for (const EdgePiece& g : pieces_) {
       const double begin = std::max(w.begin, g.begin), length = std::min(w.end, g.end) - begin;
-      if (!(length > 0)) continue;
+      if (!(length > 0) || from(w, 0) == 0) continue;
+      if (!std::isfinite(from(w, 0) + g.remainder)) return unknown;
       for (int q = 0; q < EdgeRule::size; ++q) {
         const double s = begin + length * edge_rule().points[q];
-        const double linear = w.coefficients[0] + w.coefficients[1] * (s - w.middle());
-        sum.value +=
-            length_ * length * edge_rule().weights[q] * linear * (g(s) - v.along_contact(contact_, s));
+        const double linear = w.coefficients[0] + w.coefficients[1] * (s - w.middle()), gap = g(s),
+                     v_n = v.along_contact(contact_, s),
+                     own = length_ * length * edge_rule().weights[q] * linear;
+        sum.value += own * (gap - v_n);
+        sum.radius += kRoundingOfSums * std::abs(own) * (std::abs(gap) + std::abs(v_n));
       }
       sum.radius += length_ * length * (from(w, 0) * g.remainder + from(w, 2) * (from(g, 0) + largest_v));
     }

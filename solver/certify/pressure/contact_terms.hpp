@@ -7,8 +7,8 @@
 namespace signorini {
 
 /// The integrals ∫ p (g − v_n) over edge i of the clearance space, for pressures and displacements of one or
-/// of several pairs, with the same enclosure of g in all of them. They are 0 where that is not known to be
-/// finite, which AdmissibleDisplacement has refused.
+/// of several pairs, with the same enclosure of g in all of them. Their radius is infinite where something
+/// acts on a gap that is not known to be finite.
 class ContactTerms {
  public:
   /// Of all edges together.

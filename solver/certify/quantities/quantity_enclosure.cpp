@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include <Eigen/LU>
@@ -103,7 +104,9 @@ QuantityEnclosure::Known QuantityEnclosure::work_of_traction(const Discretizatio
 /// A bound of <p, β> for the β ≥ 0 by which w − η_n may be out of its bounds: bubbles on some edges.
 double QuantityEnclosure::beyond_base(const CertifiedSolution& dual) const {
   const Discretization& discrete = base_.discrete;
-  double force = 0, square = 0;
+  double force = 0;
+  // A triangle in a corner may have a bubble on two edges, which may strain it alike.
+  std::map<int, double> strain;
   for (std::size_t i = 0; i < discrete.clearance.edges.size(); ++i) {
     const ContactEdge& contact = discrete.clearance.edges[i];
     const double b = dual.pair.v.beyond_base(contact);
@@ -113,8 +116,10 @@ double QuantityEnclosure::beyond_base(const CertifiedSolution& dual) const {
     // The mean of the bubble, times a linear pressure; a steep one may be where the bubble is highest.
     const double mean = base_.pair.pressure.steep.contains(contact.edge) ? 1 : 2. / 3;
     force += b * mean * discrete.mesh.length(contact.edge) * (p + q) / 2;
-    square += b * b * laws_.whole(t).stiffest * square_of_bubble(discrete.mesh, contact.edge);
+    strain[t] += b * std::sqrt(laws_.whole(t).stiffest * square_of_bubble(discrete.mesh, contact.edge));
   }
+  double square = 0;
+  for (const auto& [t, norm] : strain) square += norm * norm;
   return (1 + base_.loads.change_of_pressure) * force + radius_ * std::sqrt(square);
 }
 
