@@ -49,9 +49,12 @@ void AdmissibleDisplacement::constrain_beside_base() {
       for (int k = 0; k < 2; ++k) visit(contact, k, discrete_.mesh.edges[contact.edge][k]);
   };
   for_ends([&](const ContactEdge& contact, int k, int point) {
-    scale_ = std::max(scale_, std::abs(gap_at(contact, k)));
-    if (fixed_points_.contains(point) && !touches_base(contact, k))
-      beside_.factor = std::max(beside_.factor, std::abs(room(contact, k)) / beside_.base->room(contact, k));
+    const double w = gap_at(contact, k);
+    scale_ = std::max(scale_, std::abs(w));
+    if (!fixed_points_.contains(point) || touches_base(contact, k)) return;
+    // Of η there are the values in the points alone by now.
+    const double off = std::abs(w - direction(contact).dot(points_.col(point)));
+    beside_.factor = std::max(beside_.factor, off / beside_.base->room(contact, k));
   });
   for_ends([&](const ContactEdge& contact, int k, int point) {
     const double w = gap_at(contact, k), rounding = discrete_.mesh.rounding_of_normal(contact.edge),
