@@ -7,7 +7,6 @@
 #include <cblas.h>
 
 #include "progress/pace.hpp"
-#include "system/huge_pages.hpp"
 
 namespace signorini {
 
@@ -20,7 +19,6 @@ Numbers allocate_numbers(std::size_t count) {
   const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(double);
   void* const memory = std::malloc(bytes);
   if (memory == nullptr) throw OutOfMemory();
-  prefer_huge_pages(memory, bytes);
   return Numbers(static_cast<double*>(memory));
 }
 
@@ -31,7 +29,6 @@ Eigen::MatrixXd unset_square(Eigen::Index size) {
   } catch (const std::bad_alloc&) {
     throw OutOfMemory();
   }
-  prefer_huge_pages(square.data(), static_cast<std::size_t>(square.size()) * sizeof(double));
   return square;
 }
 
