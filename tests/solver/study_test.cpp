@@ -295,7 +295,7 @@ TEST(Study, HasNoMoreTimeForTheInfSupConstantThanThereIs) {
       if (phase == Phase::certify) std::this_thread::sleep_for(std::chrono::milliseconds(1050));
     }
   } observer;
-  Study study{{Scheme::conforming}, squares({{16, 16}}), {}};
+  Study study{{Scheme::conforming}, squares({{2, 2}}), {}};
   study.checks_inf_sup = true;
   Settings settings = active_set;
   settings.time_limit = 1;
