@@ -56,15 +56,6 @@ Field Field::plus(double factor, const Field& other) const {
   return {sum, name_};
 }
 
-VectorField VectorField::plus(double factor, const VectorField& other) const {
-  if (other.size() == 0) return *this;
-  VectorField sum = *this;
-  sum.components_.resize(other.size());
-  for (int c = 0; c < sum.size(); ++c)
-    sum.components_[c] = sum.components_[c].plus(factor, other.components_[c]);
-  return sum;
-}
-
 double Field::checked(double value, const Point& x) const {
   if (std::isfinite(value)) return value;
   throw InvalidProblem({{name_, "is not finite at " + to_string(x) + ": " + shortest(value)}});

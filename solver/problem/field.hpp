@@ -91,9 +91,6 @@ class VectorField {
     return components_.empty() ? 0 : components_[component](x, normal);
   }
 
-  /// The sum in each component that one of both has.
-  VectorField plus(double factor, const VectorField& other) const;
-
   int size() const { return static_cast<int>(components_.size()); }
   const std::vector<Field>& fields() const { return components_; }
 

@@ -65,12 +65,10 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
 }
 
 CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept,
-                                   Progress& progress, std::optional<LoadProjection> body)
+                                   Progress& progress)
     : operator_(std::move(kept)), reused_(true) {
   progress.enter(Phase::assemble);
-  const Mesh& mesh = operator_->mesh();
-  if (!body) body.emplace(problem, mesh, &progress);
-  discretization_ = std::make_unique<Discretization>(problem, mesh, std::move(*body), &progress);
+  discretization_ = std::make_unique<Discretization>(problem, operator_->mesh(), &progress);
   held_by_contact_alone(*discretization_);  // refuses a load that lifts the body off
   condense(progress);
 }

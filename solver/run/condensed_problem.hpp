@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
@@ -27,9 +26,7 @@ class CondensedProblem {
   /// Cancelled, SolveError and what factorize() throws. The problem must outlive it.
   CondensedProblem(const Problem& problem, std::shared_ptr<const Mesh> mesh, Factorization by,
                    Progress& progress);
-  /// `body`: its load, if that is projected already.
-  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress,
-                   std::optional<LoadProjection> body = std::nullopt);
+  CondensedProblem(const Problem& problem, std::shared_ptr<const Operator> kept, Progress& progress);
 
   const Discretization& discretization() const { return *discretization_; }
   /// It refers to the problem and to the mesh of the operator. Nothing else of this may be used any more.

@@ -16,8 +16,7 @@ OutOfMemory::OutOfMemory() : std::runtime_error("out of memory in the factorisat
 Numbers allocate_numbers(std::size_t count) {
   if (count > std::numeric_limits<std::size_t>::max() / sizeof(double)) throw OutOfMemory();
   // At least one, for malloc() may answer null if nothing is asked for.
-  const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(double);
-  void* const memory = std::malloc(bytes);
+  void* const memory = std::malloc(std::max<std::size_t>(count, 1) * sizeof(double));
   if (memory == nullptr) throw OutOfMemory();
   return Numbers(static_cast<double*>(memory));
 }

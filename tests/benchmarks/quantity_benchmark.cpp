@@ -32,13 +32,7 @@ Problem paper(Scheme scheme, int n) {
 
 /// A block that hangs from above and sags onto one.
 Problem block(Scheme scheme, int n) {
-  Problem problem;
-  problem.scheme = scheme;
-  problem.mesh = MeshRequest(Divisions{n, n});
-  problem.material = YoungPoisson{Field(200), Field(0.3), Plane::strain};
-  problem.body = VectorField(Field(0), Field(-4));
-  problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{formula("0.01 * (2*x - 1)^2")}}};
-  return problem;
+  return problems::hanging_block(scheme, n);
 }
 
 double seconds_of(const std::function<void()>& work) {

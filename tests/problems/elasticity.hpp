@@ -53,6 +53,17 @@ inline Problem pressed_angle(Scheme scheme) {
   return problem;
 }
 
+/// A block that hangs from above and sags onto a curved foundation.
+inline Problem hanging_block(Scheme scheme, int n) {
+  Problem problem;
+  problem.scheme = scheme;
+  problem.mesh = MeshRequest(Divisions{n, n});
+  problem.material = YoungPoisson{Field(200), Field(0.3), Plane::strain};
+  problem.body = VectorField(Field(0), Field(-4));
+  problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{formula("0.01 * (2*x - 1)^2")}}};
+  return problem;
+}
+
 /// The lower half of a disc of radius 1, its flat top lowered by 0.02 onto a flat foundation.
 inline Problem half_disc(Scheme scheme) {
   constexpr int edges = 64;

@@ -75,7 +75,8 @@ TEST(LoadProjection, OfASumIsTheSum) {
        {std::pair{smooth, jump}, {jump, smooth}, {constant, smooth}, {smooth, constant}, {jump, jump}})
     for (const double z : {0.7, -3.}) {
       SCOPED_TRACE(one + " and " + std::to_string(z) + " times " + other);
-      const VectorField f(problems::formula(one)), q(problems::formula(other)), both = f.plus(z, q);
+      const Field f = problems::formula(one), q = problems::formula(other);
+      const VectorField both(f.plus(z, q));
       const LoadProjection whole = projected(both), sum = projected(f).plus(z, projected(q));
       EXPECT_EQ(sum.varies(), whole.varies());
       EXPECT_TRUE(sum.unmet().empty());

@@ -61,14 +61,8 @@ std::vector<EnclosedQuantity> enclosed(const Problem& problem) {
   return solve(problem, {ActiveSet{}, {}}).summary.quantities;
 }
 
-/// A block that hangs from above and sags onto a curved foundation.
 Problem block(Scheme scheme, int n) {
-  Problem problem;
-  problem.scheme = scheme;
-  problem.mesh = MeshRequest(Divisions{n, n});
-  problem.material = YoungPoisson{Field(200), Field(0.3), Plane::strain};
-  problem.body = VectorField(Field(0), Field(-4));
-  problem.boundary = {{"top", Fixed{}}, {"bottom", Contact{formula("0.01 * (2*x - 1)^2")}}};
+  Problem problem = problems::hanging_block(scheme, n);
   problem.quantities = {pressure_force("bottom", Field(1))};
   return problem;
 }
