@@ -100,7 +100,7 @@ class Cutter {
       open_.pop();
       if (!cell.values.undecided || !cut_along(cell)) cut_in_halves(cell);
     }
-    for (; !open_.empty(); open_.pop()) visit(open_.top());
+    for (; !open_.empty(); open_.pop()) give_up(open_.top());
   }
 
  private:
@@ -144,14 +144,37 @@ class Cutter {
 
   void visit(const Cell& cell) const { visit_({cell.corners, cell.share, cell.values.models}); }
 
+  /// What is cut no more. A pole must show: rounding takes it out of the polynomial of a model, which is then
+  /// only large, and out of the cells around it, whose corners are rounded.
+  void give_up(Cell cell) const {
+    for (std::size_t i = 0; i < fields_.size(); ++i)
+      if (const Formula* formula = fields_[i]->formula(); formula && !is_known(values_around(*formula, cell)))
+        cell.values.models[i] = TaylorModel::rough(kAnything);
+    visit(cell);
+  }
+
+  /// On the cell and what rounding may have parted from it.
+  Interval values_around(const Formula& formula, const Cell& cell) const {
+    const Corners corners = physical(cell.corners);
+    const auto around = [&](int i) {
+      const auto [least, most] = std::minmax({corners[0][i], corners[1][i], corners[2][i]});
+      const double rounding = kEnclosureRounding * largest(box_[i]);
+      const auto [begin, end] = std::pair(box_[i].lower(), box_[i].upper());
+      return Series(0, {std::max(least - rounding, begin - kEnclosureRounding * std::abs(begin)),
+                        std::min(most + rounding, end + kEnclosureRounding * std::abs(end))});
+    };
+    Enclosure<Series> enclosure{around(0), around(1), Series(0), Series(0), {}, false};
+    return range(formula.evaluate(enclosure));
+  }
+
   /// `of_cell`: the share of what would else be cut.
   void add(const Corners& corners, int depth, double of_cell) {
     budget_.look_around();
     Cell cell{corners, depth, area(corners[0], corners[1], corners[2]), {}, {}};
     if (cell.share == 0 || (settled_ && settled_(corners, cell.share))) return;
     evaluate(cell);
-    if (accept_(cell.values.models, cell.share, std::max(cell.share, of_cell)) || depth == kDeepest)
-      return visit(cell);
+    if (accept_(cell.values.models, cell.share, std::max(cell.share, of_cell))) return visit(cell);
+    if (depth == kDeepest) return give_up(std::move(cell));
     open_.push(std::move(cell));
   }
 

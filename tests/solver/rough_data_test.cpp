@@ -160,6 +160,34 @@ TEST(RoughData, AGapWithACuspIsEnclosed) {
   }
 }
 
+/// A corner of triangles is infinite, or would be but for the rounding of what it is computed from.
+TEST(RoughData, ALoadWithAPoleHasNoBoundWhereverRoundingPutsIt) {
+  struct Case {
+    std::string load;
+    Rectangle domain;
+    int n;
+    Pattern pattern;
+  };
+  for (const auto& [load, domain, n, pattern] :
+       {Case{"((x-1)^2+(y-0.75)^2)^-2.5", {{0, 0}, {1, 1}}, 8, Pattern::right},
+        Case{"(abs(x-1.5388888888888888)+abs(y-1.0333333333333334))^-4",
+             {{-0.35, 0.2}, {2, 1}},
+             9,
+             Pattern::crossed},
+        Case{"1/sqrt((x-0.4)^2+(y-0.45)^2)^2", {{-0.35, 0.2}, {2, 1}}, 12, Pattern::right},
+        Case{"sqrt((x-0.65)^2+2*(y-0.9)^2)^-5", {{-0.35, 0.2}, {1.1, 0.7}}, 9, Pattern::crossed},
+        Case{"((x-0.4)^2)^-1.5", {{0.1, -0.7}, {0.3, 0.9}}, 4, Pattern::left}}) {
+    Problem problem = square();
+    problem.domain = domain;
+    problem.mesh = MeshRequest(Divisions{n, n}, pattern);
+    problem.body = problems::formula(load);
+    const ErrorBound bound = *solve(problem, {ActiveSet{}, {}}).summary.error_bound;
+    EXPECT_FALSE(bound.guaranteed) << load << ": " << bound.value;
+    EXPECT_THAT(bound.unmet, testing::ElementsAre(testing::HasSubstr("is not known to be finite near")))
+        << load;
+  }
+}
+
 /// A polynomial that follows it would rise above the rest of the body by many powers of ten.
 TEST(RoughData, AGapWithManyWavesOnAnEdgeIsStayedBelow) {
   for (const char* gap : {"0.08+0.01*sin(3333*x)", "0.1+0.08*tanh(500*(x-0.41))"}) {
