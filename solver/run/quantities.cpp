@@ -84,6 +84,18 @@ Eigen::VectorXd on_rows(const std::map<std::string, Field>& weights, const Discr
   return all;
 }
 
+/// Neither are pressures and clearances, nor then what such weights weigh.
+bool is_nowhere_negative(const Quantity& quantity, const Discretization& discrete) {
+  if (!quantity.has_no_loads() || !quantity.motions.empty()) return false;
+  const auto& weights = quantity.openings.empty() ? quantity.weights : quantity.openings;
+  return std::ranges::none_of(discrete.clearance.edges, [&](const ContactEdge& contact) {
+    const int part = discrete.clearance.rows[contact.rows[0]].part;
+    const auto weight = weights.find(discrete.mesh.boundary[part].name);
+    return weight != weights.end() &&
+           series_on(weight->second, EdgeLine(discrete.mesh, contact.edge), Interval(0, 1), 0)[0].lower() < 0;
+  });
+}
+
 /// (q, u_h) + <r, u_h>, with the loads of the dual problem.
 double work_on(const Fields& fields, const Discretization& loads) {
   const Eigen::Index free = loads.traces.free_unknowns();
@@ -136,6 +148,8 @@ class Encloser {
       enclose_by_dual(quantity, own);
     else
       enclose_opening(quantity, own);
+    if (own.is_bounded() && own.lower < 0 && own.upper >= 0 && is_nowhere_negative(quantity, discrete()))
+      own.lower = 0;
     own.guaranteed = own.is_bounded() && own.unmet.empty();
     if (own.is_bounded() && !(own.lower <= own.value && own.value <= own.upper))
       own.estimate = (own.lower + own.upper) / 2;

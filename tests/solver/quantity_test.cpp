@@ -309,6 +309,54 @@ TEST(QuantityBesideASupport, IsNotClaimed) {
   EXPECT_GT(force.value, 0.1);
 }
 
+/// Of a weight that changes its sign that is not so: its force is about −0.02.
+TEST(QuantityOfAPositiveWeight, IsNowhereNegative) {
+  for (const Scheme scheme : {Scheme::nonconforming, Scheme::conforming}) {
+    Problem problem = block(scheme, 8);
+    const Field hat = formula("max(0, 0.05 - abs(x - 0.3))");
+    problem.quantities = {pressure_force("bottom", hat), opening("bottom", hat),
+                          pressure_force("bottom", formula("0.3 - x"))};
+    const std::vector<EnclosedQuantity> all = enclosed(problem);
+    for (const int i : {0, 1}) {
+      EXPECT_TRUE(all[i].guaranteed);
+      EXPECT_GE(all[i].lower, 0);
+      EXPECT_LE(all[i].value, all[i].upper);
+    }
+    EXPECT_TRUE(all[2].guaranteed);
+    EXPECT_LT(all[2].value, 0);
+    EXPECT_LT(all[2].lower, all[2].value);
+  }
+}
+
+/// No point of the mesh knows of it.
+TEST(QuantityOfAHat, IsEnclosedWithinAnEdge) {
+  for (const Scheme scheme : {Scheme::nonconforming, Scheme::conforming}) {
+    Problem problem = block(scheme, 4);
+    const EnclosedQuantity whole = enclosed(problem).at(0);
+    problem.quantities = {pressure_force("bottom", formula("max(0, 1 - abs(x - 0.56) * 1000)"))};
+    const EnclosedQuantity force = enclosed(problem).at(0);
+    EXPECT_TRUE(force.guaranteed) << (force.unmet.empty() ? "" : force.unmet.front());
+    EXPECT_LE(force.upper, 3 * whole.upper);
+  }
+}
+
+/// Rounding tells what is nothing, and nothing else.
+TEST(QuantityOfABody, HasTheSameWidthInAnyUnits) {
+  const auto width = [](double unit) {
+    Problem problem = problems::paper(Scheme::conforming, 12);
+    const std::string in_units = digits(unit) + "*";
+    problem.material = MembraneStiffness::isotropic(Field(unit));
+    problem.body = VectorField(formula(in_units + "sin(3*x + 1)*-5"));
+    problem.boundary["bottom"] = Contact{formula("0.01 + 0.02*(x - 0.4)^2")};
+    problem.boundary["top"] = Traction{VectorField(Field(unit * 0.3))};
+    problem.quantities = {mean_on("top", VectorField(Field(1)))};
+    return enclosed(problem).at(0).relative_width();
+  };
+  const double one = width(1);
+  for (const double unit : {7.67, 2.51e-3, 3.27e2, 1e-9, 1e9})
+    EXPECT_NEAR(width(unit), one, 1e-6 * one) << unit;
+}
+
 double between(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }

@@ -98,20 +98,26 @@ ContactPressure::ContactPressure(const Discretization& discrete, const Eigen::Ma
     spread(discrete, given, chain, scale);
   }
   keep_steep(base, discrete);
-  forget_rounding(base, factor);
+  forget_rounding(base);
 }
 
-/// What is more than the factor times the base, but nothing beside the largest.
-void ContactPressure::forget_rounding(const ContactPressure& base, double factor) {
+/// What is nothing beside the largest does not tell what K is.
+void ContactPressure::forget_rounding(const ContactPressure& base) {
   double largest = 0;
   for (const std::array<double, 2>& own : at_ends)
     largest = std::max({largest, std::abs(own[0]), std::abs(own[1])});
+  std::vector<std::array<double, 2>> rounding = at_ends;
   for (std::size_t i = 0; i < at_ends.size(); ++i)
-    for (const int k : {0, 1})
-      if (std::abs(at_ends[i][k]) <= kNoLack * kForceRounding * largest) {
-        const double most = factor * std::abs(base.at_ends[i][k]);
-        at_ends[i][k] = std::clamp(at_ends[i][k], -most, most);
-      }
+    for (const int k : {0, 1}) {
+      const bool is_rounding = std::abs(at_ends[i][k]) <= kNoLack * kForceRounding * largest;
+      (is_rounding ? at_ends : rounding)[i][k] = 0;
+    }
+  const double factor = factor_beside(base);
+  for (std::size_t i = 0; i < at_ends.size(); ++i)
+    for (const int k : {0, 1}) {
+      const double most = factor * std::abs(base.at_ends[i][k]);
+      at_ends[i][k] += std::clamp(rounding[i][k], -most, most);
+    }
 }
 
 /// With the factor, or twice, four times it and so on, until the chain as a whole takes its force.

@@ -88,7 +88,7 @@ struct ContactPressure {
   ContactChain with_own_forces(const Discretization& discrete, ContactChain chain) const;
   void keep(const Discretization& discrete, const ContactChain& given, const ContactChain& admissible);
   void keep_steep(const ContactPressure& base, const Discretization& discrete);
-  void forget_rounding(const ContactPressure& base, double factor);
+  void forget_rounding(const ContactPressure& base);
   void add_curl(const Discretization& discrete, const ContactChain& chain,
                 const std::vector<double>& at_nodes, const std::vector<double>& means);
   void take_lack(const Discretization& discrete, const ContactChain& links, double sign,
