@@ -70,9 +70,10 @@ Connection::Connection(const std::string& url, std::chrono::seconds patience)
     : patience_(patience), connection_(connect(url), PQfinish) {
   if (PQstatus(connection_.get()) != CONNECTION_OK) lose(first_line(PQerrorMessage(connection_.get())));
   PQsetnonblocking(connection_.get(), 1);
-  // Whoever is stopped within a step holds nobody up for longer than that.
+  // Whoever is stopped within a step holds nobody up for longer than that. To compile a statement takes
+  // longer than all of ours do.
   script("SET statement_timeout = '" + std::to_string(longest_statement.count()) +
-         "s'; SET idle_in_transaction_session_timeout = '10s'");
+         "s'; SET idle_in_transaction_session_timeout = '10s'; SET jit = off");
 }
 
 Rows Connection::run(const std::string& sql, const Values& values) {
