@@ -20,6 +20,7 @@ struct Estimate {
   double paper_form_bytes = 0;  ///< the same by the paper's iteration
   double solution_bytes = 0;    ///< of them, what its solution keeps
   double entry_bytes = 0;       ///< what each entry of a sweep adds
+  double kept_bytes = 0;        ///< what a sweep keeps for its quantities
   double seconds = 0;           ///< from a fit to measured solves
 };
 

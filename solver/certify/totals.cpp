@@ -21,7 +21,8 @@ template <int D, typename Sums>
 void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
                  const Owners& owners, Progress& progress, const AdmissiblePair* second) {
   LawField<D> law(discrete.problem.material);
-  const Eigen::VectorXd unbalanced = oscillations(discrete, pair.pressure, laws, owners, progress);
+  const Eigen::VectorXd unbalanced = oscillations(discrete, load_remainders(discrete, owners, progress),
+                                                  pair.pressure, laws, owners, progress);
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     if (owners[t] < 0) continue;

@@ -125,14 +125,17 @@ Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
           all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
 }
 
-Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start) {
+Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start,
+                                 KeptDuals* kept) {
   progress.enter(Phase::iterate);
   const Fields fields = find(settings.method, progress, start);
   Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
   const auto bound = [&] {
     Certificate certificate = certify(*discretization_, solution, fields.coupling, progress);
-    enclose_quantities(*this, fields, solution, settings, certificate, progress);
+    KeptDuals own(KeptDuals::For::one_solve);
+    enclose_quantities(*this, fields, solution, settings.factorization, certificate, kept ? *kept : own,
+                       progress);
     return certificate;
   };
   add_bound(discretization_->problem, bound, solution, progress);

@@ -19,6 +19,8 @@ ContactResult find_clearance(const ContactComplement& contact, const Method& met
 /// A foundation is so far away beside the displacement that its gap would drown it.
 bool is_far(const ClearanceSpace& space, double displacement);
 
+class KeptDuals;
+
 /// A problem with everything but the contact unknowns eliminated, by an operator that was kept or is made.
 class CondensedProblem {
  public:
@@ -40,8 +42,10 @@ class CondensedProblem {
   /// reach is as good as any other.
   Fields find(const Method& method, Progress& progress, const Eigen::VectorXd& start = {});
 
-  /// The same with all that the fields tell, error bound included.
-  Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {});
+  /// The same with all that the fields tell, error bound included. `kept`: of the sweep that this is an entry
+  /// of.
+  Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {},
+                 KeptDuals* kept = nullptr);
 
  private:
   Fields find_as_posed(const Method& method, Progress& progress, const Eigen::VectorXd& start);

@@ -8,15 +8,33 @@
 
 namespace signorini {
 
-/// What the solution of a problem changes by along its data: dual_problem() on its mesh, solved by its
-/// operator, with contact closed where it was.
+/// dual_problem() on the mesh of a problem, condensed by its operator: the same for all loads and gaps.
+class CondensedDual {
+ public:
+  CondensedDual(const CondensedDual&) = delete;
+  CondensedDual(const CondensedProblem& base, const Quantity& quantity, Progress& progress);
+
+ private:
+  friend class DualSolution;
+
+  const std::shared_ptr<const Operator> operator_;  ///< has the mesh
+  Problem problem_;
+  Discretization discretization_;
+  const Eigen::VectorXd right_;
+  CondensedContact condensed_;
+  const Eigen::VectorXd remainders_;  ///< load_remainders()
+  const bool has_loads_;
+};
+
+/// What the solution of a problem changes by along its data: its dual problem, solved with contact closed
+/// where it was.
 class DualSolution {
  public:
   DualSolution(const DualSolution&) = delete;
-  /// All must outlive it.
-  DualSolution(const CondensedProblem& base, const Quantity& quantity, Progress& progress);
+  /// Both must outlive it.
+  DualSolution(const CondensedProblem& base, CondensedDual& dual) : base_(base), dual_(dual) {}
 
-  const Discretization& discretization() const { return discretization_; }
+  const Discretization& discretization() const { return dual_.discretization_; }
 
   /// Solves it. `clearance`: of the base. Forces of contact are held at `factor` times those of the base.
   void solve(const Eigen::VectorXd& clearance, double factor, Progress& progress);
@@ -38,11 +56,7 @@ class DualSolution {
 
  private:
   const CondensedProblem& base_;
-  Problem problem_;
-  Discretization discretization_;
-  const Eigen::VectorXd right_;
-  CondensedContact condensed_;
-  const bool has_loads_;
+  CondensedDual& dual_;
   double factor_ = 0, largest_factor_ = 0;
   Eigen::VectorXd coupling_, clearance_;
   Solution solution_;

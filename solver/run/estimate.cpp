@@ -322,6 +322,7 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
         problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
     if (opens) estimate.memory_bytes *= 2;
     estimate.memory_bytes += memory_of_dual(problem_, spaces, sizes.triangles);
+    estimate.kept_bytes = memory_of_kept_duals(problem_, spaces, sizes);
   }
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
@@ -346,9 +347,10 @@ Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entr
     estimate.memory_bytes = std::max(estimate.memory_bytes, estimate.paper_form_bytes);
   estimate.memory_bytes += std::visit(
       [](const auto& method) { return memory_of_history(method.max_iterations); }, settings.method);
-  // A sweep has a second solution, to which its entries refer.
+  // A sweep has a second solution, to which its entries refer, and what they share.
   if (entries > 0)
-    estimate.memory_bytes += estimate.solution_bytes + static_cast<double>(entries) * estimate.entry_bytes;
+    estimate.memory_bytes +=
+        estimate.solution_bytes + estimate.kept_bytes + static_cast<double>(entries) * estimate.entry_bytes;
   return estimate;
 }
 

@@ -9,6 +9,7 @@
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
 #include "progress/observer.hpp"
+#include "run/kept_duals.hpp"
 
 namespace signorini {
 namespace {
@@ -84,12 +85,12 @@ double dofs_per_triangle(const Spaces& spaces) {
 
 /// A discretization of a triangle: its load, its degrees of freedom and those of half its edges' and points'
 /// sides.
-double discretization(const Problem& problem, const Spaces& spaces) {
+double discretization(const VectorField& body, const Spaces& spaces) {
   const double dofs = 1.5 * spaces.traces_per_edge() + (spaces.rotations() ? 0.5 : 0);
   const double own = dofs_per_triangle(spaces);
   const double couple = spaces.leaves_couples() ? 1 : 0;
   return kNumber * (spaces.displacements() + couple + dofs) + sizeof(CouplingDof) * dofs +
-         kIndex * (own + 1.5) + (is_uniform(problem.body) ? 0 : sizeof(ProjectedLoad));
+         kIndex * (own + 1.5) + (is_uniform(body) ? 0 : sizeof(ProjectedLoad));
 }
 
 /// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
@@ -164,6 +165,22 @@ double memory_of_dual(const Problem& problem, const Spaces& spaces, double trian
          triangles * loads * static_cast<double>(sizeof(ProjectedLoad));
 }
 
+double memory_of_kept_dual(const Quantity& quantity, const Spaces& spaces, const SolveSizes& sizes) {
+  constexpr double sides = 3;  // given, condensed, and at work
+  return sizes.triangles * (discretization(quantity.density, spaces) + kNumber) +
+         sides * kNumber * sizes.system;
+}
+
+double memory_of_kept_duals(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  double sum = 0;
+  for (const Quantity& quantity : problem.quantities) {
+    if (!quantity.openings.empty()) continue;
+    const double own = memory_of_kept_dual(quantity, spaces, sizes);
+    if (sum + own <= KeptDuals::kRoom) sum += own;
+  }
+  return sum;
+}
+
 double memory_of_levels(const Spaces& spaces, double triangles) {
   constexpr double all = 3, share = 1, per_triangle = 0.5;  // points
   const double numbers = per_triangle * (2 + spaces.components) + share;
@@ -175,7 +192,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
   const double complement = kNumber * sizes.contact * sizes.contact;
   const double kept = made.panels + kGrowth * made.fronts + complement +
-                      sizes.triangles * (kMesh + discretization(problem, spaces));
+                      sizes.triangles * (kMesh + discretization(problem.body, spaces));
   const double right = kNumber * sizes.system;
   const double factoring = while_factoring(made, spaces, sizes, by) + complement + right +
                            sizes.triangles * element_sum(spaces, of_own_shape(problem));
@@ -205,10 +222,10 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);
-  return kSlack *
-         (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
-          3 * kNumber * sizes.system +
-          sizes.triangles * (kMesh + discretization(problem, spaces) + element_sum(spaces, 1) + iteration));
+  return kSlack * (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
+                   3 * kNumber * sizes.system +
+                   sizes.triangles *
+                       (kMesh + discretization(problem.body, spaces) + element_sum(spaces, 1) + iteration));
 }
 
 double memory_of_inf_sup(const Spaces& spaces, double triangles) {

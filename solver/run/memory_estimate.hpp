@@ -35,6 +35,10 @@ double memory_of_solution(const Spaces& spaces, double triangles);
 /// What enclosing quantities takes besides: a dual problem at a time with its pair, and that of the base.
 double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles);
 
+/// What a sweep keeps of the dual problem of a quantity, and of all quantities of the problem.
+double memory_of_kept_dual(const Quantity& quantity, const Spaces& spaces, const SolveSizes& sizes);
+double memory_of_kept_duals(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);
+
 /// What the solution keeps of the levels of a mesh that refines itself, each of which has half as many
 /// triangles again as the one before.
 double memory_of_levels(const Spaces& spaces, double triangles);

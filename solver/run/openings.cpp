@@ -51,32 +51,26 @@ const Field* weight_on(const Quantity& quantity, const Discretization& discrete,
   return found == quantity.openings.end() ? nullptr : &found->second;
 }
 
-/// A bound of the norm of the stress τ with τ n = w d on the contacts, 0 on Γ_F and div τ = 0: twice the
-/// energy that the pull takes. Infinite if nothing is known of it.
-double norm_of_pull(const Quantity& quantity, const Discretization& discrete, const Settings& settings,
-                    Progress& progress, std::vector<std::string>& unmet) {
-  const Problem problem = pulled(quantity, discrete.problem);
-  try {
-    CondensedProblem condensed(problem, std::make_shared<const Mesh>(discrete.mesh), settings.factorization,
-                               progress);
-    const Settings exactly{ActiveSet{}, std::nullopt, 0, settings.factorization};
-    const Solution solution = condensed.solve(exactly, progress);
-    if (const auto& bound = solution.summary.error_bound) {
-      unmet.insert(unmet.end(), bound->unmet.begin(), bound->unmet.end());
-      return std::sqrt(2 * std::max(0., -bound->energy_lower));
-    }
-    unmet.push_back("nothing bounds the energy of the body that the weight pulls");
-  } catch (const SolveError& failure) {
-    unmet.push_back(failure.what());
-  } catch (const NotPositiveDefinite&) {
-    unmet.push_back(needs_support);
-  } catch (const InvalidProblem&) {
-    unmet.push_back(needs_support);
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
+
+Pull pull_of(const Quantity& quantity, const Discretization& discrete, Factorization by, Progress& progress) {
+  const Problem problem = pulled(quantity, discrete.problem);
+  constexpr double anything = std::numeric_limits<double>::infinity();
+  try {
+    CondensedProblem condensed(problem, std::make_shared<const Mesh>(discrete.mesh), by, progress);
+    const Settings exactly{ActiveSet{}, std::nullopt, 0, by};
+    const Solution solution = condensed.solve(exactly, progress);
+    if (const auto& bound = solution.summary.error_bound)
+      return {std::sqrt(2 * std::max(0., -bound->energy_lower)), bound->unmet};
+    return {anything, {"nothing bounds the energy of the body that the weight pulls"}};
+  } catch (const SolveError& failure) {
+    return {anything, {failure.what()}};
+  } catch (const NotPositiveDefinite&) {
+    return {anything, {needs_support}};
+  } catch (const InvalidProblem&) {
+    return {anything, {needs_support}};
+  }
+}
 
 double opening_of(const Quantity& quantity, const Discretization& discrete,
                   const Eigen::VectorXd& clearance) {
@@ -95,10 +89,10 @@ double opening_of(const Quantity& quantity, const Discretization& discrete,
 }
 
 std::array<double, 2> enclose_opening(const Quantity& quantity, const CertifiedSolution& base, double radius,
-                                      const Settings& settings, Progress& progress,
-                                      std::vector<std::string>& unmet) {
+                                      const Pull& pull, Progress& progress, std::vector<std::string>& unmet) {
   const Discretization& discrete = base.discrete;
-  const double off = radius * norm_of_pull(quantity, discrete, settings, progress, unmet);
+  unmet.insert(unmet.end(), pull.unmet.begin(), pull.unmet.end());
+  const double off = radius * pull.norm;
   ContactTerms::Work all;
   CellBudget budget{ContactTerms::kCells, &progress};
   const int edges = static_cast<int>(discrete.clearance.edges.size());

@@ -35,7 +35,8 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
   const Settings exactly{ActiveSet{}, std::nullopt};
   const Solution discrete = describe(condensed.discretization(), fields, exactly, within);
   Certificate certificate = certify(condensed.discretization(), discrete, fields.coupling, within);
-  enclose_quantities(condensed, fields, discrete, exactly, certificate, within);
+  KeptDuals duals(KeptDuals::For::one_solve);
+  enclose_quantities(condensed, fields, discrete, by, certificate, duals, within);
   move_to(iterate.stress, condensed.discretization(), discrete, certificate, within);
   return certificate;
 }

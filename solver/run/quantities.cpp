@@ -5,14 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "certify/data/oscillation.hpp"
 #include "certify/quantities/quantity_enclosure.hpp"
 #include "contact/residuals.hpp"
 #include "fem/edge_pieces.hpp"
 #include "fem/lagrange.hpp"
 #include "fem/per_shape.hpp"
 #include "fem/quadrature.hpp"
-#include "run/dual_solution.hpp"
-#include "run/openings.hpp"
 
 namespace signorini {
 namespace {
@@ -129,25 +128,29 @@ class Encloser {
  public:
   /// Takes the pair of the certificate.
   Encloser(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
-           const Settings& settings, Certificate& certificate, Progress& progress)
+           Factorization by, Certificate& certificate, KeptDuals& kept, Progress& progress)
       : condensed_(condensed),
         fields_(fields),
         solution_(solution),
-        settings_(settings),
+        by_(by),
+        kept_(kept),
         progress_(progress),
         laws_(discrete().problem.material, discrete().mesh,
               kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
-        base_(discrete(), solution, std::move(*certificate.pair), laws_, progress),
+        base_(discrete(), solution, std::move(*certificate.pair),
+              load_remainders(discrete(), std::vector(discrete().triangles(), 0), progress), laws_, progress),
         enclosure_(base_, laws_, progress),
         size_(norm_of(solution.stress, discrete())) {}
 
-  EnclosedQuantity operator()(const Quantity& quantity) {
+  /// Of quantity i.
+  EnclosedQuantity operator()(std::size_t i) {
+    const Quantity& quantity = discrete().problem.quantities[i];
     EnclosedQuantity own;
     own.name = quantity.name;
     if (quantity.openings.empty())
-      enclose_by_dual(quantity, own);
+      enclose_by_dual(quantity, kept_.dual(condensed_, i, progress_), own);
     else
-      enclose_opening(quantity, own);
+      enclose_opening(quantity, kept_.pull(condensed_, i, by_, progress_), own);
     if (own.is_bounded() && own.lower < 0 && own.upper >= 0 && is_nowhere_negative(quantity, discrete()))
       own.lower = 0;
     own.guaranteed = own.is_bounded() && own.unmet.empty();
@@ -163,18 +166,18 @@ class Encloser {
  private:
   const Discretization& discrete() const { return condensed_.discretization(); }
 
-  void enclose_opening(const Quantity& quantity, EnclosedQuantity& own) {
+  void enclose_opening(const Quantity& quantity, const Pull& pull, EnclosedQuantity& own) {
     own.value = own.estimate =
         opening_of(quantity, discrete(), discrete().clearance.clearance(fields_.clearance));
     own.unmet = base_.unmet;
     const auto [lower, upper] =
-        signorini::enclose_opening(quantity, base_, enclosure_.radius(), settings_, progress_, own.unmet);
+        signorini::enclose_opening(quantity, base_, enclosure_.radius(), pull, progress_, own.unmet);
     own.lower = lower;
     own.upper = upper;
   }
 
-  void enclose_by_dual(const Quantity& quantity, EnclosedQuantity& own) {
-    DualSolution dual(condensed_, quantity, progress_);
+  void enclose_by_dual(const Quantity& quantity, CondensedDual& condensed, EnclosedQuantity& own) {
+    DualSolution dual(condensed_, condensed);
     own.value = own.estimate = value_of(quantity, dual.discretization(), discrete(), fields_, solution_);
     own.unmet = base_.unmet;
     try {
@@ -233,7 +236,8 @@ class Encloser {
   const CondensedProblem& condensed_;
   const Fields& fields_;
   const Solution& solution_;
-  const Settings& settings_;
+  const Factorization by_;
+  KeptDuals& kept_;
   Progress& progress_;
   const LawOnMesh laws_;
   const CertifiedSolution base_;
@@ -244,13 +248,13 @@ class Encloser {
 }  // namespace
 
 void enclose_quantities(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
-                        const Settings& settings, Certificate& certificate, Progress& progress) {
+                        Factorization by, Certificate& certificate, KeptDuals& kept, Progress& progress) {
   const std::vector<Quantity>& quantities = condensed.discretization().problem.quantities;
   if (quantities.empty() || !certificate.has_bound()) return;
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
-  Encloser enclose(condensed, fields, solution, settings, certificate, within);
-  for (const Quantity& quantity : quantities) certificate.quantities.push_back(enclose(quantity));
+  Encloser enclose(condensed, fields, solution, by, certificate, kept, within);
+  for (std::size_t i = 0; i < quantities.size(); ++i) certificate.quantities.push_back(enclose(i));
 }
 
 }  // namespace signorini

@@ -82,9 +82,9 @@ class Sweep::Reference {
   /// `condense(problem)` eliminates. One that is shown is not asked for other gaps.
   template <typename Condense>
   Reference(Problem posed, const Condense& condense, const Settings& settings, Progress& progress,
-            const ShowSolution& show)
+            KeptDuals& kept, const ShowSolution& show)
       : problem_(std::move(posed)), condensed_(condense(problem_)), contact_(condensed_.contact()) {
-    Solution solution = condensed_.solve(settings, progress);
+    Solution solution = condensed_.solve(settings, progress, {}, &kept);
     if (show) show(solution);
     clearance_ = of_unknowns(space(), clearances(solution.contact) - beyond(space()));
     displacement_ = solution.displacement.lpNorm<Eigen::Infinity>();
@@ -260,6 +260,7 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const Sh
   if (!is_at_hand(variation)) {
     // Before the next one is made: there is memory for one.
     reference_.reset();
+    kept_.clear();
     operator_.reset();
   }
   // Quantities are enclosed by fields.
@@ -271,7 +272,7 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const Sh
       return operator_ ? CondensedProblem(posed, operator_, progress)
                        : CondensedProblem(posed, mesh_, settings_.factorization, progress);
     };
-    reference_ = std::make_unique<Reference>(varied_, condense, settings_, progress, show);
+    reference_ = std::make_unique<Reference>(varied_, condense, settings_, progress, kept_, show);
     const bool is_known = !variation.material || !variation.material_key.empty();
     operator_ = is_known ? reference_->used_operator() : nullptr;
     material_key_ = variation.material ? variation.material_key : "";

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "condensed_problem.hpp"
+#include "kept_duals.hpp"
 
 namespace signorini {
 
@@ -51,6 +51,7 @@ class Sweep {
   std::shared_ptr<const Operator> operator_;  ///< null if none is at hand
   std::string material_key_;                  ///< of its material; empty: the problem's own
   std::unique_ptr<Reference> reference_;
+  KeptDuals kept_{KeptDuals::For::sweep};
 };
 
 }  // namespace signorini

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "certify/data/oscillation.hpp"
 #include "problems/elasticity.hpp"
+#include "problems/families.hpp"
 #include "problems/long_tests.hpp"
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
@@ -357,6 +359,60 @@ TEST(QuantityOfABody, HasTheSameWidthInAnyUnits) {
     EXPECT_NEAR(width(unit), one, 1e-6 * one) << unit;
 }
 
+Solution solved(const Problem& problem, const std::vector<Variation>& sweep) {
+  Observer indifferent;
+  problems::Shelf shelf;
+  return solve(problem, sweep, {ActiveSet{}, {}}, indifferent, shelf);
+}
+
+/// What entries share with each other changes nothing: each has the intervals of the same problem alone.
+TEST(QuantitiesOfASweep, AreThoseOfTheProblemsAlone) {
+  for (const Scheme scheme : {Scheme::nonconforming, Scheme::conforming}) {
+    Problem problem = block(scheme, 6);
+    problem.operator_key = "block";
+    Quantity disc = mean_in("disc", VectorField(Field(0), formula("(x-0.5)^2 + (y-0.4)^2 < 0.05 ? 1 : 0")));
+    problem.quantities = {pressure_force("bottom", formula("1 + x")), disc, opening("bottom", Field(1)),
+                          reaction("top", {Vector(0, 1), 0})};
+    const YoungPoisson soft{Field(100), Field(0.2), Plane::strain};
+    std::vector<Variation> sweep(5, Variation{"", problem.body, problem.boundary, ""});
+    sweep[1].body = VectorField(Field(1), Field(-6));
+    sweep[2].boundary["bottom"] = Contact{formula("0.004 + 0.01*x^2")};
+    sweep[3].material = soft;
+    sweep[3].material_key = "soft";
+    const Solution solution = solved(problem, sweep);
+    ASSERT_EQ(solution.sweep.size(), sweep.size());
+    for (std::size_t i = 0; i < sweep.size(); ++i) {
+      Problem alone = problem;
+      alone.body = sweep[i].body;
+      alone.boundary = sweep[i].boundary;
+      if (sweep[i].material) alone.material = *sweep[i].material;
+      const std::vector<EnclosedQuantity> expected = enclosed(alone), &found = solution.sweep[i].quantities;
+      ASSERT_EQ(found.size(), expected.size()) << solution.sweep[i].error;
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        EXPECT_EQ(found[k].lower, expected[k].lower) << i << " " << found[k].name;
+        EXPECT_EQ(found[k].upper, expected[k].upper) << i << " " << found[k].name;
+        EXPECT_TRUE(found[k].guaranteed);
+      }
+    }
+  }
+}
+
+/// Discs are projected once, and that is foreseen.
+TEST(QuantitiesOfASweep, AreForeseenInMemory) {
+  if (sanitized) GTEST_SKIP() << "memory is counted without sanitizers";
+  for (const std::size_t count : {2, 8}) {
+    Problem problem = block(Scheme::conforming, 48);
+    problem.quantities.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      problem.quantities.push_back(mean_in("m" + std::to_string(i), VectorField(Field(0), formula("x*y"))));
+    const std::vector<Variation> sweep(3, Variation{"", problem.body, problem.boundary, ""});
+    const auto peak = static_cast<double>(solved(problem, sweep).summary.peak_memory_bytes);
+    const double foreseen = estimate(problem, sweep, {ActiveSet{}, {}}).memory_bytes;
+    EXPECT_LE(peak, foreseen) << count;
+    EXPECT_GE(2 * peak, foreseen) << count;
+  }
+}
+
 double between(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
@@ -505,8 +561,10 @@ class DualPairs {
         solution_(describe(discrete(), fields_, {ActiveSet{}, {}}, progress_)),
         laws_(problem_.material, discrete().mesh, 1e-5, progress_),
         base_(discrete(), solution_, admissible_pair(discrete(), solution_, fields_.coupling, progress_),
-              laws_, progress_),
-        dual_solution_(condensed_, problem_.quantities.front(), progress_),
+              load_remainders(discrete(), std::vector(discrete().triangles(), 0), progress_), laws_,
+              progress_),
+        condensed_dual_(condensed_, problem_.quantities.front(), progress_),
+        dual_solution_(condensed_, condensed_dual_),
         dual_(solved(factor).certified(base_, factor, laws_, progress_)) {}
 
   const Discretization& discrete() const { return condensed_.discretization(); }
@@ -530,6 +588,7 @@ class DualPairs {
   const Solution solution_;
   const LawOnMesh laws_;
   const CertifiedSolution base_;
+  CondensedDual condensed_dual_;
   DualSolution dual_solution_;
   const CertifiedSolution dual_;
 };

@@ -15,13 +15,20 @@ constexpr int kCellsOfJumps = 20'000;
 }  // namespace
 
 template <int D>
-double oscillation(const Discretization& discrete, int t, const ContactPressure& pressure,
-                   const LawOnMesh& laws, CellBudget& budget) {
+double load_remainder(const Discretization& discrete, int t, CellBudget& budget) {
   const auto corners = discrete.mesh.corners(t);
   const ProjectedLoad& load = discrete.body[t];
-  double sum = load.unbalanced > 0 ? linear_remainder<D>(corners) * load.unbalanced : 0;
-  if (load.jumps && sum > 0)
-    sum = std::min(sum, jump_oscillation<D>(discrete.problem.body, load, corners, budget));
+  if (!(load.unbalanced > 0)) return 0;
+  const double remainder = linear_remainder<D>(corners) * load.unbalanced;
+  return load.jumps ? std::min(remainder, jump_oscillation<D>(discrete.problem.body, load, corners, budget))
+                    : remainder;
+}
+
+template <int D>
+double oscillation(const Discretization& discrete, int t, double of_load, const ContactPressure& pressure,
+                   const LawOnMesh& laws) {
+  const auto corners = discrete.mesh.corners(t);
+  double sum = of_load;
   for (int e = 0; e < 3; ++e) {
     const int edge = discrete.mesh.triangle_edges[t][e];
     const double rest =
@@ -31,9 +38,9 @@ double oscillation(const Discretization& discrete, int t, const ContactPressure&
   return sum == 0 ? 0 : sum * std::sqrt(laws.whole(t).softest);
 }
 
-Eigen::VectorXd oscillations(const Discretization& discrete, const ContactPressure& pressure,
-                             const LawOnMesh& laws, const std::vector<int>& owners, Progress& progress) {
-  const auto of = discrete.spaces().components == 1 ? oscillation<1> : oscillation<2>;
+Eigen::VectorXd load_remainders(const Discretization& discrete, const std::vector<int>& owners,
+                                Progress& progress) {
+  const auto of = discrete.spaces().components == 1 ? load_remainder<1> : load_remainder<2>;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(discrete.triangles());
   CellBudget budget{kCellsOfJumps, &progress};
   int jumps = 0;
@@ -41,15 +48,27 @@ Eigen::VectorXd oscillations(const Discretization& discrete, const ContactPressu
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
     if (owners[t] < 0) continue;
-    budget.share(std::max(1, jumps), [&](CellBudget& own) { all[t] = of(discrete, t, pressure, laws, own); });
+    budget.share(std::max(1, jumps), [&](CellBudget& own) { all[t] = of(discrete, t, own); });
     jumps -= discrete.body[t].jumps;
   }
   return all;
 }
 
-template double oscillation<1>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
-                               CellBudget&);
-template double oscillation<2>(const Discretization&, int, const ContactPressure&, const LawOnMesh&,
-                               CellBudget&);
+Eigen::VectorXd oscillations(const Discretization& discrete, const Eigen::VectorXd& of_load,
+                             const ContactPressure& pressure, const LawOnMesh& laws,
+                             const std::vector<int>& owners, Progress& progress) {
+  const auto of = discrete.spaces().components == 1 ? oscillation<1> : oscillation<2>;
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(discrete.triangles());
+  for (int t = 0; t < discrete.triangles(); ++t) {
+    progress.check_in(t);
+    if (owners[t] >= 0) all[t] = of(discrete, t, of_load[t], pressure, laws);
+  }
+  return all;
+}
+
+template double load_remainder<1>(const Discretization&, int, CellBudget&);
+template double load_remainder<2>(const Discretization&, int, CellBudget&);
+template double oscillation<1>(const Discretization&, int, double, const ContactPressure&, const LawOnMesh&);
+template double oscillation<2>(const Discretization&, int, double, const ContactPressure&, const LawOnMesh&);
 
 }  // namespace signorini

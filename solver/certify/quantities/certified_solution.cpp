@@ -18,13 +18,13 @@ ContactPressure taking(const CertifiedSolution* base, const ContactPressure& own
 }  // namespace
 
 CertifiedSolution::CertifiedSolution(const Discretization& of, const Solution& solution,
-                                     AdmissiblePair admissible, const LawOnMesh& laws, Progress& progress,
-                                     const CertifiedSolution* base)
+                                     AdmissiblePair admissible, const Eigen::VectorXd& of_load,
+                                     const LawOnMesh& laws, Progress& progress, const CertifiedSolution* base)
     : discrete(of),
       stress(solution.stress),
       pair(std::move(admissible)),
-      oscillations(
-          signorini::oscillations(of, pair.pressure, laws, std::vector(of.triangles(), 0), progress)),
+      oscillations(signorini::oscillations(of, of_load, pair.pressure, laws, std::vector(of.triangles(), 0),
+                                           progress)),
       loads(carry_uncertain_loads(of, laws, taking(base, pair.pressure))),
       unmet(reasons_against(of, solution, pair, laws, progress)) {
   if (!loads.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));

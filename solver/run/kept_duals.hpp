@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "run/dual_solution.hpp"
+#include "run/openings.hpp"
+
+namespace signorini {
+
+/// What the quantities of a problem need that neither its loads nor its gaps change: the entries of a sweep,
+/// which share an operator, share that, too.
+class KeptDuals {
+ public:
+  /// Those of a sweep are kept as far as there is room, which memory_of_kept_duals() foresees.
+  enum class For { one_solve, sweep };
+  explicit KeptDuals(For use) : most_(use == For::sweep ? kRoom : 0) {}
+
+  /// That of quantity i of the problem, until the next one is asked for.
+  CondensedDual& dual(const CondensedProblem& base, std::size_t i, Progress& progress);
+  const Pull& pull(const CondensedProblem& base, std::size_t i, Factorization by, Progress& progress);
+
+  /// Lets go of all, and of the operator.
+  void clear();
+
+  /// Bytes; a disc's projection on a mesh of a few thousand triangles takes one or two millions.
+  static constexpr double kRoom = 256e6;
+
+ private:
+  void begin_anew_unless(const CondensedProblem& base);
+
+  std::shared_ptr<const Operator> operator_;
+  double most_, used_ = 0;
+  std::map<std::size_t, std::unique_ptr<CondensedDual>> duals_;
+  std::unique_ptr<CondensedDual> last_;  ///< for which there was no room
+  std::map<std::size_t, Pull> pulls_;
+};
+
+}  // namespace signorini
