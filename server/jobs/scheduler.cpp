@@ -212,7 +212,7 @@ LookoutEars Scheduler::ears() {
   ears.begun = [this](const std::string& id, const std::shared_ptr<const LiveSolve>& live) {
     const std::lock_guard lock(mutex_);
     const auto watch = watch_of(id);
-    if (watch && !running_.contains(id)) watch->begin(live);
+    if (watch && !running_.contains(id)) watch->begin_elsewhere(live);
   };
   ears.ended = [this](const std::string& id) { end_watch(id); };
   ears.queued = [this] {

@@ -29,6 +29,12 @@ class Watch {
     const std::lock_guard lock(mutex_);
     live_ = std::move(live);
   }
+  /// What was seen of a solve of another process. It may be one of this process that has just ended, as it
+  /// was a moment before, of which all is known.
+  void begin_elsewhere(std::shared_ptr<const LiveSolve> live) {
+    const std::lock_guard lock(mutex_);
+    if (!live_ || live_->started() != live->started()) live_ = std::move(live);
+  }
   /// Tells those who wanted to be told.
   void end() {
     std::vector<std::weak_ptr<const Told>> all;
