@@ -22,7 +22,7 @@ CondensedDual::CondensedDual(const CondensedProblem& base, const Quantity& quant
                       &progress, ClearanceOf::change),
       right_(assemble_right(discretization_, progress)),
       condensed_(*operator_, right_, progress),
-      remainders_(load_remainders(discretization_, std::vector(discretization_.triangles(), 0), progress)),
+      remainders_(load_remainders(discretization_, progress)),
       has_loads_(!quantity.has_no_loads()) {}
 
 void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progress& progress) {

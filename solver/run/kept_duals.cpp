@@ -1,7 +1,5 @@
 #include "run/kept_duals.hpp"
 
-#include "run/memory_estimate.hpp"
-
 namespace signorini {
 
 void KeptDuals::clear() {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "run/dual_solution.hpp"
+#include "run/memory_estimate.hpp"
 #include "run/openings.hpp"
 
 namespace signorini {
@@ -16,7 +17,7 @@ class KeptDuals {
  public:
   /// Those of a sweep are kept as far as there is room, which memory_of_kept_duals() foresees.
   enum class For { one_solve, sweep };
-  explicit KeptDuals(For use) : most_(use == For::sweep ? kRoom : 0) {}
+  explicit KeptDuals(For use) : most_(use == For::sweep ? kRoomForDuals : 0) {}
 
   /// That of quantity i of the problem, until the next one is asked for.
   CondensedDual& dual(const CondensedProblem& base, std::size_t i, Progress& progress);
@@ -24,9 +25,6 @@ class KeptDuals {
 
   /// Lets go of all, and of the operator.
   void clear();
-
-  /// Bytes; a disc's projection on a mesh of a few thousand triangles takes one or two millions.
-  static constexpr double kRoom = 256e6;
 
  private:
   void begin_anew_unless(const CondensedProblem& base);

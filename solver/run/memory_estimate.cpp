@@ -9,7 +9,6 @@
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
 #include "progress/observer.hpp"
-#include "run/kept_duals.hpp"
 
 namespace signorini {
 namespace {
@@ -176,7 +175,7 @@ double memory_of_kept_duals(const Problem& problem, const Spaces& spaces, const 
   for (const Quantity& quantity : problem.quantities) {
     if (!quantity.openings.empty()) continue;
     const double own = memory_of_kept_dual(quantity, spaces, sizes);
-    if (sum + own <= KeptDuals::kRoom) sum += own;
+    if (sum + own <= kRoomForDuals) sum += own;
   }
   return sum;
 }

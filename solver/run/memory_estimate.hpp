@@ -35,6 +35,9 @@ double memory_of_solution(const Spaces& spaces, double triangles);
 /// What enclosing quantities takes besides: a dual problem at a time with its pair, and that of the base.
 double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles);
 
+/// Bytes that a sweep may keep dual problems in: one takes one or two millions on a few thousand triangles.
+inline constexpr double kRoomForDuals = 256e6;
+
 /// What a sweep keeps of the dual problem of a quantity, and of all quantities of the problem.
 double memory_of_kept_dual(const Quantity& quantity, const Spaces& spaces, const SolveSizes& sizes);
 double memory_of_kept_duals(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);

@@ -45,13 +45,14 @@ Problem pulled(const Quantity& quantity, Problem problem) {
   return problem;
 }
 
-const Field* weight_on(const Quantity& quantity, const Discretization& discrete, const ContactEdge& contact) {
-  const int part = discrete.clearance.rows[contact.rows[0]].part;
-  const auto found = quantity.openings.find(discrete.mesh.boundary[part].name);
-  return found == quantity.openings.end() ? nullptr : &found->second;
-}
-
 }  // namespace
+
+const Field* weight_on(const std::map<std::string, Field>& weights, const Discretization& discrete,
+                       const ContactEdge& contact) {
+  const int part = discrete.clearance.rows[contact.rows[0]].part;
+  const auto found = weights.find(discrete.mesh.boundary[part].name);
+  return found == weights.end() ? nullptr : &found->second;
+}
 
 Pull pull_of(const Quantity& quantity, const Discretization& discrete, Factorization by, Progress& progress) {
   const Problem problem = pulled(quantity, discrete.problem);
@@ -76,7 +77,7 @@ double opening_of(const Quantity& quantity, const Discretization& discrete,
                   const Eigen::VectorXd& clearance) {
   double sum = 0;
   for (const ContactEdge& contact : discrete.clearance.edges)
-    if (const Field* weight = weight_on(quantity, discrete, contact)) {
+    if (const Field* weight = weight_on(quantity.openings, discrete, contact)) {
       const EdgeLine line(discrete.mesh, contact.edge);
       const auto at = [&](int row) { return clearance[row] + discrete.clearance.rows[row].beyond; };
       for (int q = 0; q < EdgeRule::size; ++q) {
@@ -97,7 +98,7 @@ std::array<double, 2> enclose_opening(const Quantity& quantity, const CertifiedS
   CellBudget budget{ContactTerms::kCells, &progress};
   const int edges = static_cast<int>(discrete.clearance.edges.size());
   for (int i = 0; i < edges; ++i)
-    if (const Field* weight = weight_on(quantity, discrete, discrete.clearance.edges[i]))
+    if (const Field* weight = weight_on(quantity.openings, discrete, discrete.clearance.edges[i]))
       budget.share(edges - i, [&](CellBudget& own) {
         const auto [value, known] =
             ContactTerms(discrete, base.pair.v, i, own).opening(*weight, base.pair.v, own);

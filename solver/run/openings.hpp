@@ -5,6 +5,10 @@
 
 namespace signorini {
 
+/// That of the part that a contact edge lies on; null if there is none.
+const Field* weight_on(const std::map<std::string, Field>& weights, const Discretization& discrete,
+                       const ContactEdge& contact);
+
 /// ∫ w λ of the discrete solution.
 double opening_of(const Quantity& quantity, const Discretization& discrete, const Eigen::VectorXd& clearance);
 

@@ -71,10 +71,10 @@ Eigen::VectorXd on_rows(const std::map<std::string, Field>& weights, const Discr
   const int order = discrete.spaces().order;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(space.rows.size()));
   for (const ContactEdge& contact : space.edges) {
-    const auto weight = weights.find(mesh.boundary[space.rows[contact.rows[0]].part].name);
-    if (weight == weights.end()) continue;
+    const Field* weight = weight_on(weights, discrete, contact);
+    if (weight == nullptr) continue;
     const EdgeLine line(mesh, contact.edge);
-    const auto value = [&](double s) { return line.value(weight->second, s); };
+    const auto value = [&](double s) { return line.value(*weight, s); };
     if (order == 0)
       all[contact.rows[0]] = project_onto_edge(0, edge_moments(0, value))[0];
     else
@@ -88,10 +88,9 @@ bool is_nowhere_negative(const Quantity& quantity, const Discretization& discret
   if (!quantity.has_no_loads() || !quantity.motions.empty()) return false;
   const auto& weights = quantity.openings.empty() ? quantity.weights : quantity.openings;
   return std::ranges::none_of(discrete.clearance.edges, [&](const ContactEdge& contact) {
-    const int part = discrete.clearance.rows[contact.rows[0]].part;
-    const auto weight = weights.find(discrete.mesh.boundary[part].name);
-    return weight != weights.end() &&
-           series_on(weight->second, EdgeLine(discrete.mesh, contact.edge), Interval(0, 1), 0)[0].lower() < 0;
+    const Field* weight = weight_on(weights, discrete, contact);
+    return weight != nullptr &&
+           series_on(*weight, EdgeLine(discrete.mesh, contact.edge), Interval(0, 1), 0)[0].lower() < 0;
   });
 }
 
@@ -137,8 +136,8 @@ class Encloser {
         progress_(progress),
         laws_(discrete().problem.material, discrete().mesh,
               kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
-        base_(discrete(), solution, std::move(*certificate.pair),
-              load_remainders(discrete(), std::vector(discrete().triangles(), 0), progress), laws_, progress),
+        base_(discrete(), solution, std::move(*certificate.pair), load_remainders(discrete(), progress),
+              laws_, progress),
         enclosure_(base_, laws_, progress),
         size_(norm_of(solution.stress, discrete())) {}
 

@@ -561,8 +561,7 @@ class DualPairs {
         solution_(describe(discrete(), fields_, {ActiveSet{}, {}}, progress_)),
         laws_(problem_.material, discrete().mesh, 1e-5, progress_),
         base_(discrete(), solution_, admissible_pair(discrete(), solution_, fields_.coupling, progress_),
-              load_remainders(discrete(), std::vector(discrete().triangles(), 0), progress_), laws_,
-              progress_),
+              load_remainders(discrete(), progress_), laws_, progress_),
         condensed_dual_(condensed_, problem_.quantities.front(), progress_),
         dual_solution_(condensed_, condensed_dual_),
         dual_(solved(factor).certified(base_, factor, laws_, progress_)) {}

@@ -54,6 +54,10 @@ Eigen::VectorXd load_remainders(const Discretization& discrete, const std::vecto
   return all;
 }
 
+Eigen::VectorXd load_remainders(const Discretization& discrete, Progress& progress) {
+  return load_remainders(discrete, std::vector(discrete.triangles(), 0), progress);
+}
+
 Eigen::VectorXd oscillations(const Discretization& discrete, const Eigen::VectorXd& of_load,
                              const ContactPressure& pressure, const LawOnMesh& laws,
                              const std::vector<int>& owners, Progress& progress) {

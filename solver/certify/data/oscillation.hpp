@@ -28,6 +28,8 @@ double load_remainder(const Discretization& discrete, int t, CellBudget& budget)
 /// others.
 Eigen::VectorXd load_remainders(const Discretization& discrete, const std::vector<int>& owners,
                                 Progress& progress);
+/// Of all triangles.
+Eigen::VectorXd load_remainders(const Discretization& discrete, Progress& progress);
 /// The same of oscillation(), with the entries of load_remainders().
 Eigen::VectorXd oscillations(const Discretization& discrete, const Eigen::VectorXd& of_load,
                              const ContactPressure& pressure, const LawOnMesh& laws,

@@ -48,13 +48,15 @@ void AdmissibleDisplacement::constrain_beside_base() {
     for (const ContactEdge& contact : discrete_.clearance.edges)
       for (int k = 0; k < 2; ++k) visit(contact, k, discrete_.mesh.edges[contact.edge][k]);
   };
+  // A weight may have all that it has between the ends.
+  for (const ContactEdge& contact : discrete_.clearance.edges) {
+    const EdgeLine line(discrete_.mesh, contact.edge);
+    const Interval along = series_on(gap(contact), line, Interval(0, 1), 0)[0];
+    if (is_known(along)) scale_ = std::max(scale_, largest(along));
+  }
   for_ends([&](const ContactEdge& contact, int k, int point) {
     const double w = gap_at(contact, k);
     scale_ = std::max(scale_, std::abs(w));
-    // A weight may have all that it has between the ends.
-    const Interval along =
-        series_on(gap(contact), EdgeLine(discrete_.mesh, contact.edge), Interval(0, 1), 0)[0];
-    if (is_known(along)) scale_ = std::max(scale_, largest(along));
     if (!fixed_points_.contains(point) || touches_base(contact, k)) return;
     // Of η there are the values in the points alone by now.
     const double off = std::abs(w - direction(contact).dot(points_.col(point)));
