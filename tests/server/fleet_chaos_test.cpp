@@ -21,14 +21,17 @@ using nlohmann::json;
 using postgres::Values;
 using Clock = std::chrono::steady_clock;
 
-/// What the fleet does with its rows, as triggers see it: each end of a job, and how late a silent runner
-/// lost his.
-constexpr const char* witnesses = R"sql(
+/// What the fleet does with its rows, as triggers see it: each end of a job...
+constexpr const char* witness_of_ends = R"sql(
 CREATE TABLE ends (job text, status text);
 CREATE FUNCTION note_end() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN INSERT INTO ends VALUES (NEW.id, NEW.status); RETURN NULL; END $$;
 CREATE TRIGGER note_end AFTER UPDATE OF finished ON jobs FOR EACH ROW WHEN (NEW.finished IS NOT NULL)
   EXECUTE FUNCTION note_end();
+)sql";
+
+/// ...and how late a silent runner lost his.
+constexpr const char* witness_of_rescues = R"sql(
 CREATE TABLE rescues (late bigint);
 CREATE FUNCTION note_rescue() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
@@ -44,7 +47,11 @@ class Chaos {
  public:
   explicit Chaos(std::size_t replicas) : database_(server_.new_database("jobs")), replicas_(replicas) {
     for (auto& replica : replicas_) replica = make();
-    postgres::Connection(database_, 10s).script(witnesses);
+    // One transaction each: a trigger locks its table, and the services, which hold a row of one table when
+    // they ask for the other, must never wait for a transaction that holds both.
+    postgres::Connection connection(database_, 10s);
+    connection.script(witness_of_ends);
+    connection.script(witness_of_rescues);
   }
 
   /// Posts until it is taken in, wherever; what it is told meanwhile must be something that passes. Its id.
