@@ -32,4 +32,23 @@ Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b
   return a.colPivHouseholderQr().solve(b);
 }
 
+Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                                       std::optional<double> smallest_pivot) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  if (smallest_pivot) decomposition.setThreshold(*smallest_pivot);
+  return decomposition.compute(a).solve(b);
+}
+
+Eigen::MatrixXd kernel(const Eigen::MatrixXd& a, std::optional<double> smallest_pivot) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition;
+  if (smallest_pivot) decomposition.setThreshold(*smallest_pivot);
+  decomposition.compute(a.transpose());
+  const Eigen::MatrixXd directions = decomposition.householderQ();
+  return directions.rightCols(a.cols() - decomposition.rank());
+}
+
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& a) {
+  return Eigen::HouseholderQR<Eigen::MatrixXd>(a).matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
+}
+
 }  // namespace signorini

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 namespace signorini {
@@ -24,5 +26,16 @@ Eigen::MatrixXd solve_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 
 /// The columns X with the least ‖A X − B‖.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The shortest of these columns. Pivots of A that are smaller than so many times the largest count as 0;
+/// rounding's by default.
+Eigen::MatrixXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                                       std::optional<double> smallest_pivot = {});
+
+/// An orthonormal basis of the x with A x = 0, by columns; pivots as above.
+Eigen::MatrixXd kernel(const Eigen::MatrixXd& a, std::optional<double> smallest_pivot = {});
+
+/// The upper triangular R with Rᵀ R = Aᵀ A, of an A with more rows than columns.
+Eigen::MatrixXd triangular_factor(const Eigen::MatrixXd& a);
 
 }  // namespace signorini

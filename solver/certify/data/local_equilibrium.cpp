@@ -8,6 +8,7 @@
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -79,7 +80,7 @@ LocalStress<2>::LocalStress(const std::array<Point, 3>& corners) {
   }
   const Eigen::Matrix<double, 3, 6> tested = rigid.transpose() * mass;
   load.leftCols<kTractions>() = -rigid * (tested * rigid).inverse() * moments;
-  load.rightCols<kMore>() = Eigen::FullPivLU<Eigen::MatrixXd>(tested).kernel();
+  load.rightCols<kMore>() = kernel(tested);
   for (int j = 0; j < kUnknowns; ++j)
     data.col(j).tail<12>() =
         (-map.determinant * inverse * at_nodes<2>(load.col(j).reshaped(2, 3))).reshaped();

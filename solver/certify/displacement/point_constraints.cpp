@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/QR>
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -17,7 +17,7 @@ Eigen::VectorXd project(const Eigen::VectorXd& v, const Constraints& chosen) {
     directions.row(static_cast<Eigen::Index>(i)) = chosen[i].direction.transpose();
     excess[static_cast<Eigen::Index>(i)] = chosen[i].direction.dot(v) - chosen[i].bound;
   }
-  return v - directions.completeOrthogonalDecomposition().solve(excess);
+  return v - shortest_least_squares(directions, excess);
 }
 
 bool meets(const Eigen::VectorXd& v, const Constraints& constraints, double rounding) {

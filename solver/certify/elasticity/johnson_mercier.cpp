@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
+#include "fem/small_matrices.hpp"
 #include "fem/triangle_pieces.hpp"
 
 namespace signorini {
@@ -150,11 +150,10 @@ JohnsonMercier make() {
   add_outer_tractions(all);
   add_inner_continuity(all);
   add_divergence(all);
-  Eigen::JacobiSVD<DynamicMatrix> svd(all.of_stress, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(1e-10);
+  constexpr double smallest_pivot = 1e-10;  // some conditions say what others say
   JohnsonMercier element;
-  element.from_data = svd.solve(all.of_data);
-  element.free = svd.matrixV().rightCols<JohnsonMercier::kFree>();
+  element.from_data = shortest_least_squares(all.of_stress, all.of_data, smallest_pivot);
+  element.free = kernel(all.of_stress, smallest_pivot);
   return element;
 }
 

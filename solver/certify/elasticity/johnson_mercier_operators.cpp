@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include "fem/small_matrices.hpp"
 
@@ -233,18 +232,12 @@ JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const A
       rule, map,
       {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>(), {}},
       std::span(&law, 1));
-  const auto factor = [](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
-    return Eigen::HouseholderQR<Eigen::MatrixXd>(rows)
-        .matrixQR()
-        .topRows(rows.cols())
-        .triangularView<Eigen::Upper>();
-  };
-  gap = factor(values.gap);
-  direct_gap = factor(values.direct_gap);
-  strain = factor(values.strain);
-  correction = factor(values.correction.leftCols(data + functions));
-  skew = factor(values.skew.middleCols(data, functions));
-  stress = factor(values.stress.middleCols(data, functions));
+  gap = triangular_factor(values.gap);
+  direct_gap = triangular_factor(values.direct_gap);
+  strain = triangular_factor(values.strain);
+  correction = triangular_factor(values.correction.leftCols(data + functions));
+  skew = triangular_factor(values.skew.middleCols(data, functions));
+  stress = triangular_factor(values.stress.middleCols(data, functions));
   inner = values.inner;
 }
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <map>
 
-#include <Eigen/QR>
 #include <Eigen/SparseCholesky>
+
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -116,7 +117,7 @@ class Objective {
   Eigen::VectorXd lowest_from(const Eigen::VectorXd& y) const {
     if (rows_.rows() == 0) return lowest_;
     const Eigen::MatrixXd between = rows_ * answers_;
-    return lowest_ - answers_ * between.completeOrthogonalDecomposition().solve(rows_ * (lowest_ - y));
+    return lowest_ - answers_ * shortest_least_squares(between, rows_ * (lowest_ - y));
   }
 
   Eigen::VectorXd unknowns(const Eigen::VectorXd& y) const { return basis_ * y; }

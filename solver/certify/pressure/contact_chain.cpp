@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-#include <Eigen/QR>
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -131,10 +131,7 @@ class PressureTimesMotion {
   /// The motion with which it has this force and moment, and by how much they are missed.
   Eigen::Vector3d motion_for(const Eigen::Vector3d& lack) const {
     // A motion along a straight chain does no work, and the rotation about the middle of an arc hardly any.
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix3d> decomposition;
-    decomposition.setThreshold(1e-13);
-    decomposition.compute(matrix_);
-    return decomposition.solve(lack);
+    return shortest_least_squares(matrix_, lack, 1e-13);
   }
   double misses(const Eigen::Vector3d& lack, const Eigen::Vector3d& motion) const {
     return (matrix_ * motion - lack).norm();
