@@ -27,12 +27,13 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
     progress.check_in(t);
     if (owners[t] < 0) continue;
     const TriangleSums own = sums(t, law, laws);
-    const double o = unbalanced[t];
+    const double o = unbalanced[t], off = o + own.rounding;
     all += own;
-    all.known += o * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
+    all.known += off * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
     oscillation_square += o * o;
-    const double of_gap = std::pow(std::sqrt(own.gap + own.slack) + o, 2),
-                 of_correction = std::pow(std::sqrt(own.correction + own.slack) + o, 2);
+    rounding_square += own.rounding * own.rounding;
+    const double of_gap = std::pow(own.norm_of_gap() + o, 2),
+                 of_correction = std::pow(std::sqrt(own.correction + own.slack) + off, 2);
     balanced_gap += of_gap;
     balanced_correction += of_correction;
     shares[owners[t]] += of_gap + of_correction + own.skew;
@@ -98,14 +99,17 @@ ErrorBound bound_from(const Totals& totals) {
   const double p_square = gap * gap + totals.contact, radius = std::sqrt(p_square + totals.contact);
   const double known = sums.known + totals.carried * (2 * std::sqrt(sums.moved + sums.slack) +
                                                       std::sqrt(sums.span + sums.slack));
+  const double rounding = std::sqrt(totals.rounding_square);
   double product = correction * radius;
   if (totals.second_counts)
     product = std::min(product,
                        least_over_the_way(sums.correction, sums.span, sums.along, radius, known, sums.slack) +
-                           oscillation * radius);
-  bound.value =
-      std::sqrt(totals.contact + (gap * gap + correction * correction + sums.direct_gap + sums.slack) / 2 +
-                product + sums.skew + sums.slack);
+                           (oscillation + rounding) * radius);
+  const double direct_gap = std::sqrt(sums.direct_gap) + rounding,
+               skew = sums.skew > 0 ? std::sqrt(sums.skew) + rounding : 0;
+  bound.value = std::sqrt(totals.contact +
+                          (gap * gap + correction * correction + direct_gap * direct_gap + sums.slack) / 2 +
+                          product + skew * skew + sums.slack);
   const double of_stress = std::sqrt(sums.stress);
   bound.relative = of_stress > 0 ? bound.value / of_stress : (bound.value > 0 ? 1 : 0);
   const double unknown =

@@ -25,8 +25,8 @@ struct Totals {
   void add(const CarriedLoads& loads);
 
   TriangleSums all;
-  double contact = 0, oscillation_square = 0;
-  double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)² over the triangles
+  double contact = 0, oscillation_square = 0, rounding_square = 0;
+  double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)², o with rounding
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
   double carried = 0;  ///< the norm of the stress that carries uncertain loads
   std::optional<std::string> endless_gap;  ///< where p* acts on a gap that is not known to be finite

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "certify/admissible_pair.hpp"
 #include "certify/data/law_pieces.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
@@ -30,10 +32,15 @@ struct TriangleSums {
   /// polynomial, and of some of v there is but a bound.
   double slack = 0;
   double energy_slack = 0;  ///< and ½ ‖ε(v)‖²_E − (f, v)
+  /// What rounding changes of a field, in its norm: on one triangle.
+  double rounding = 0;
 
   TriangleSums& operator+=(const TriangleSums& other);
   /// Strains of the norm ζ in v that are not among the sums.
   void add_unknown_strain(double zeta);
+  /// Of fields made of a displacement with values of at most this size, on the triangle of the map.
+  void set_rounding(const AffineMap& map, const LawPiece& law, double largest_value);
+  double norm_of_gap() const { return std::sqrt(gap + slack) + rounding; }
 };
 
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the stream function of both it and the

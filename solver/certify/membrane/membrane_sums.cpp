@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/data/balanced_load.hpp"
+#include "certify/rounding.hpp"
 
 namespace signorini {
 namespace {
@@ -38,6 +39,20 @@ void TriangleSums::add_unknown_strain(double zeta) {
   const auto norm = [this](double square) { return std::sqrt(square + slack); };
   const double fields = norm(gap) + norm(direct_gap) + norm(correction) + 2 * norm(span) + 4 * norm(moved);
   slack += zeta * (2 * fields + zeta);
+}
+
+/// Rounding changes the entries of C by a part of the largest, which is that times their contrast of the
+/// smallest; what it changes of a Jacobian J counts |J|²/det J times in what is mapped there and back.
+/// Gradients are differences of values, however much alike.
+void TriangleSums::set_rounding(const AffineMap& map, const LawPiece& law, double largest_value) {
+  const double contrast = law.is_known() ? law.softest * law.stiffest : 1,
+               stretch = map.jacobian.squaredNorm() / map.determinant;
+  const double of_fields = contrast * stretch * stretch * (std::sqrt(2 * strain) + std::sqrt(gap));
+  const double of_gradients = law.is_known() ? std::sqrt(law.stiffest * map.determinant) *
+                                                   map.jacobian.norm() / map.determinant * largest_value
+                                             : 0;
+  rounding = kRoundingOfFields * (of_fields + of_gradients);
+  energy_slack += rounding * (std::sqrt(2 * strain) + rounding);
 }
 
 MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given, bool balanced)
@@ -124,6 +139,8 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
                          rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
     sums.add_unknown_strain(zeta);
   }
+  sums.set_rounding(AffineMap(discrete_.mesh.corners(t)), laws.whole(t),
+                    bound_of_quadratic(displacement_on<1>(terms_, t)));
   return sums;
 }
 

@@ -52,11 +52,11 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& term
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress_.check_in(t);
     const TriangleSums own = fields(t, law, laws_);
-    sums.gaps[t] = own.gap + own.slack;
+    sums.gaps[t] = std::pow(own.norm_of_gap(), 2);
     sums.gap += own.gap;
     sums.strain += own.strain;
     sums.energy += own.energy;
-    sums.slack += own.slack;
+    sums.slack += own.slack + own.rounding * (2 * std::sqrt(own.gap) + own.rounding);
     sums.energy_slack += own.energy_slack;
   }
   return sums;

@@ -1,0 +1,102 @@
+// What rounding leaves is paid for: bodies that nothing but rounding keeps from being solved exactly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "problems/elasticity.hpp"
+#include "solve.hpp"
+
+namespace signorini::rounding_test {
+namespace {
+
+/// Between rollers at both sides, pressed on a foundation: σ_yy = −p, u_y = −p y / E' with the constrained
+/// modulus E'.
+struct Column {
+  double height, poisson, p = 0.125;
+
+  Problem problem(Scheme scheme, Pattern pattern) const {
+    Problem made;
+    made.domain = Rectangle{{0, 0}, {1, height}};
+    made.mesh = {Divisions{2, 4}, pattern};
+    made.scheme = scheme;
+    made.material = YoungPoisson{Field(1), Field(poisson), Plane::strain};
+    made.boundary = {
+        {"left", Roller{}}, {"right", Roller{}}, {"bottom", Contact{Field(0)}}, {"top", Pressure{Field(p)}}};
+    Quantity top;
+    top.name = "top";
+    top.densities = {{"top", VectorField(Field(0), Field(1))}};
+    made.quantities = {top};
+    return made;
+  }
+
+  /// More digits than doubles have.
+  long double sinking() const {
+    const long double nu = poisson;
+    return p * (1 + nu) * (1 - 2 * nu) / (1 - nu) * height;
+  }
+  long double energy() const { return -sinking() * p / 2; }
+};
+
+void expect_enclosed(const Column& column, Scheme scheme, Pattern pattern) {
+  Summary summary;
+  try {
+    summary = solve(column.problem(scheme, pattern), {ActiveSet{}, std::nullopt}).summary;
+  } catch (const std::runtime_error&) {
+    return;  // rounding leaves nothing of the matrix, and says so
+  }
+  ASSERT_TRUE(summary.error_bound);
+  if (!summary.error_bound->guaranteed) return;
+  EXPECT_LE(summary.error_bound->energy_lower, column.energy());
+  EXPECT_GE(summary.error_bound->energy_upper, column.energy());
+  const long double work = 2 * -column.energy();
+  EXPECT_LE(summary.certified->work.lower, work);
+  EXPECT_GE(summary.certified->work.upper, work);
+  ASSERT_EQ(summary.quantities.size(), 1u);
+  if (!summary.quantities[0].guaranteed) return;
+  EXPECT_LE(summary.quantities[0].lower, -column.sinking());
+  EXPECT_GE(summary.quantities[0].upper, -column.sinking());
+}
+
+/// Near incompressible the volume is a difference of entries of C; of flat triangles gradients are
+/// differences of values that are much alike.
+TEST(Rounding, IsPaidForByTheBound) {
+  for (const double poisson : {-0.9, 0.25, 0.4375, 0.4999, 0.499999, 0.4999999})
+    for (const double height : {1., std::exp2(-5), std::exp2(-10)})
+      for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+        for (const Pattern pattern : {Pattern::right, Pattern::alternating, Pattern::crossed}) {
+          SCOPED_TRACE("ν = " + std::to_string(poisson) + ", height " + std::to_string(height) + ", scheme " +
+                       std::to_string(static_cast<int>(scheme)) + ", pattern " +
+                       std::to_string(static_cast<int>(pattern)));
+          expect_enclosed({height, poisson}, scheme, pattern);
+        }
+}
+
+/// Of an ordinary body it takes no digit that anybody would miss.
+TEST(Rounding, IsLittleOfOrdinaryBodies) {
+  const Summary summary =
+      solve(Column{1, 0.3}.problem(Scheme::conforming, Pattern::right), {ActiveSet{}, std::nullopt}).summary;
+  EXPECT_TRUE(summary.error_bound->guaranteed);
+  EXPECT_LE(summary.error_bound->relative, 1e-11);
+  EXPECT_LE(summary.quantities[0].upper - summary.quantities[0].lower, 1e-11);
+}
+
+/// The bound of a body at rest is 0, and a law that varies is as near to a polynomial as that asks.
+TEST(Rounding, OfABodyAtRestEndsToo) {
+  Problem problem = problems::block(Scheme::nonconforming, Pattern::right, 1, 0.3);
+  problem.material = YoungPoisson{problems::formula("1 + x"), Field(0.3), Plane::strain};
+  problem.boundary = {{"right", Fixed{}}, {"top", Contact{Field(0.1)}}};
+  Quantity mean;
+  mean.name = "mean";
+  mean.density = VectorField(Field(0), Field(1));
+  problem.quantities = {mean};
+  const Summary summary = solve(problem, {ActiveSet{}, 60}).summary;
+  ASSERT_EQ(summary.quantities.size(), 1u);
+  EXPECT_LE(summary.quantities[0].lower, 0);
+  EXPECT_GE(summary.quantities[0].upper, 0);
+  EXPECT_LE(summary.quantities[0].upper - summary.quantities[0].lower, 1e-10);
+}
+
+}  // namespace
+}  // namespace signorini::rounding_test
