@@ -19,6 +19,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Nearer than that rounding lets no law be told from a polynomial: a bound that is 0 asks for no more.
+constexpr double kLeastTolerance = 1e-12;
+
 /// The least tolerance where the law jumps along a curve, on a few triangles.
 constexpr double kToleranceOfJumps = 2e-4;
 
@@ -384,7 +387,10 @@ void take_as_in_points(const Material& material, const std::array<Point, 3>& cor
 }  // namespace
 
 LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double tolerance, Progress& progress)
-    : material_(material), mesh_(mesh), progress_(progress), tolerance_(tolerance) {
+    : material_(material),
+      mesh_(mesh),
+      progress_(progress),
+      tolerance_(std::max(tolerance, kLeastTolerance)) {
   const int count = is_constant(material) ? 1 : static_cast<int>(mesh.triangles.size());
   const std::vector<const Field*> fields = fields_of(material);
   for (const Field* field : fields)
@@ -397,7 +403,7 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
     if (t % 64 == 0) progress.check();
     // A law that varies so much on a triangle that it would take too many pieces is known less well.
     std::vector<LawPiece> pieces;
-    LawTolerance own_tolerance{tolerance, std::max(tolerance, kToleranceOfJumps)};
+    LawTolerance own_tolerance{tolerance_, std::max(tolerance_, kToleranceOfJumps)};
     for (;; loosen(pieces, own_tolerance)) {
       CellBudget budget = budget_of_triangle(material, progress);
       pieces = law_pieces(material, mesh.corners(t), own_tolerance, budget);
