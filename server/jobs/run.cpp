@@ -23,6 +23,8 @@ ProblemDetails details_of(const Summary& summary) {
       return {"stalled", "The method stopped before it had an answer", summary.advice};
     case Outcome::diverged:
       return {"diverged", "The method did not converge", summary.advice};
+    case Outcome::time_limit:
+      return {"time-limit", "Not all was done in time", summary.advice};
     default:
       return {"not-converged", "The method did not converge", summary.advice};
   }

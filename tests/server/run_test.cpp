@@ -80,5 +80,17 @@ TEST(Run, ReadingCountsForTheTimeLimit) {
   EXPECT_NO_THROW(solve_alone(request, indifferent));
 }
 
+/// It is no fault of the method, which may have converged before the time was over.
+TEST(Run, SaysThatTheTimeWasOver) {
+  const Ending ending = run_within(1e9, [](const api::Request&, Observer&) {
+    Solution solution;
+    solution.summary.outcome = Outcome::time_limit;
+    return solution;
+  });
+  EXPECT_EQ(ending.status, JobStatus::failed);
+  ASSERT_TRUE(ending.error);
+  EXPECT_EQ(ending.error->kind, "time-limit");
+}
+
 }  // namespace
 }  // namespace signorini::server::run_test

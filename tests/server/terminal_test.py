@@ -84,7 +84,7 @@ class Terminal(unittest.TestCase):
         self.assertEqual(numbers, sorted(numbers))
         # The failure is told behind it, on a line of its own.
         last = shown.rsplit("\r\x1b[K", 1)[1]
-        self.assertRegex(last, r"^The method did not converge: the time limit .*\n$")
+        self.assertRegex(last, r"^Not all was done in time: the time limit .*\n$")
         for quiet in ({"terminals": ("stdout",)}, {"term": "dumb"}):
             self.assertNotIn("\x1b", solve(problem=slow, **quiet)[2])
 
