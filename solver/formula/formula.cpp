@@ -42,4 +42,9 @@ bool Formula::has_variables() const {
   });
 }
 
+bool Formula::has_branches() const {
+  return std::ranges::any_of(program_,
+                             [](const Instruction& step) { return step.operation == Operation::choose; });
+}
+
 }  // namespace signorini

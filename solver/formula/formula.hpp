@@ -71,6 +71,8 @@ class Formula {
 
   /// Some value of it is not the same everywhere.
   bool has_variables() const;
+  /// It chooses between values.
+  bool has_branches() const;
 
  private:
   template <typename Arithmetic>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/data/law_pieces.hpp"
+#include "certify/data/linear_remainder.hpp"
 #include "certify/displacement/star_relaxation.hpp"
 #include "fem/load_projection.hpp"
 #include "fem/trace_space.hpp"
@@ -136,13 +137,42 @@ double certificate(const Problem& problem, const Spaces& spaces) {
          (spaces.components == 2 ? relaxation(of_own_shape(problem)) : 0);
 }
 
+/// Whether all is known of the load and of the tractions.
+bool are_loads_uniform(const Problem& problem) {
+  return is_uniform(problem.body) && std::ranges::all_of(problem.boundary, [](const auto& part) {
+           const Condition& condition = part.second;
+           if (const auto* traction = std::get_if<Traction>(&condition)) return is_uniform(traction->value);
+           if (const auto* pressure = std::get_if<Pressure>(&condition))
+             return pressure->value.is_constant() && is_uniform(pressure->besides);
+           return true;
+         });
+}
+
+/// What is not known of loads that may have any form: what carries it through the motions of the triangles,
+/// the factor of the differences across all edges and what it is made of
+/// (certify/data/motion_differences.hpp).
+/// That of a membrane is so small that it takes no more than what is gone by then.
+double carrying(const Problem& problem, const Spaces& spaces, double triangles) {
+  if (spaces.components == 1 || are_loads_uniform(problem)) return 0;
+  constexpr double motions = 3;
+  const double edges = 1.5 * triangles;
+  const double in_factor = kNumber * motions * motions * edges * std::log2(triangles + 2);
+  const double of_edge = kNumber * 4 * motions * motions + kIndex * (2 * motions + 1) + sizeof(Point);
+  return in_factor + edges * of_edge + triangles * sizeof(MotionRemainder);
+}
+
+/// Tables of what a load that jumps leaves, as measured.
+double tables_of_jumps(const Spaces& spaces) {
+  return spaces.components == 1 ? 3.9e6 : 0.6e6;
+}
+
 /// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
 /// where its pressure changes, and the points of one triangle of an elastic body on which the law is cut into
 /// pieces. As measured.
 double tables(const Problem& problem, const Spaces& spaces) {
   const bool is_membrane = spaces.components == 1;
-  const double of_shapes = 7.5e5, of_jumps = is_membrane ? 3.9e6 : 0.6e6, of_patches = 3e6, of_points = 30e6;
-  return of_shapes + (is_uniform(problem.body) ? 0 : of_jumps) +
+  const double of_shapes = 7.5e5, of_patches = 3e6, of_points = 30e6;
+  return of_shapes + (is_uniform(problem.body) ? 0 : tables_of_jumps(spaces)) +
          (is_membrane && spaces.order == 1 ? of_patches : 0) +
          (is_membrane || is_constant(problem.material) ? 0 : of_points);
 }
@@ -155,12 +185,24 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
   return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
 }
 
+/// Cells along the curve where a density jumps, as measured of the smallest discs.
+constexpr double kCellsOfJump = 9.5e6;
+
+bool jumps(const VectorField& density) {
+  return std::ranges::any_of(density.fields(), [](const Field& field) {
+    return field.formula() && field.formula()->has_branches();
+  });
+}
+
 /// As measured, in solutions, beside the load of the quantity and its sum with that of the problem where they
 /// vary.
 double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles) {
   const bool density_varies = !std::ranges::all_of(problem.quantities, is_uniform, &Quantity::density);
   const int loads = density_varies ? 2 : is_uniform(problem.body) ? 0 : 1;
-  return (spaces.components == 1 ? 2 : 5) * memory_of_solution(spaces, triangles) +
+  const double of_jumps = std::ranges::any_of(problem.quantities, jumps, &Quantity::density)
+                              ? kCellsOfJump + tables_of_jumps(spaces)
+                              : 0;
+  return (spaces.components == 1 ? 2 : 5) * memory_of_solution(spaces, triangles) + of_jumps +
          triangles * loads * static_cast<double>(sizeof(ProjectedLoad));
 }
 
@@ -199,7 +241,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
   const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
                             sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces)) +
-                            tables(problem, spaces);
+                            carrying(problem, spaces, sizes.triangles) + tables(problem, spaces);
   // Extensions have the components in a point of a cut, where traces and rotations have more on a side.
   const double on_side = spaces.traces_per_edge() + (spaces.rotations() ? 1 : 0), d = spaces.components;
   const double of_factor = d * d / (on_side * on_side) * while_factoring(made, spaces, sizes, by);

@@ -94,6 +94,24 @@ TEST_P(Memory, OfOtherMeshesAndLaws) {
   expect_bound(varying, {ActiveSet{}, std::nullopt}, tables_of_laws);
 }
 
+/// What is not known of a load is carried to the supports by a factor of its own.
+TEST_P(Memory, OfLoadsThatNothingEncloses) {
+  for (const char* const load : {"x^x", "tan(10 * x)", "1 / (x - 0.3711)"}) {
+    SCOPED_TRACE(load);
+    const int n = long_tests() ? 64 : 32;
+    Problem block = elastic(GetParam(), n, 2 * n);
+    block.mesh.pattern = Pattern::crossed;
+    block.body = VectorField(problems::formula(load), Field(-1));
+    expect_bound(block);
+    block.body = VectorField(Field(0), Field(-1));
+    block.boundary["right"] = Traction{VectorField(problems::formula("y^y"), Field(0))};
+    expect_bound(block);
+    Problem sagging = membrane(GetParam(), n, n);
+    sagging.body = Field(problems::formula(load));
+    expect_bound(sagging);
+  }
+}
+
 /// One dual problem at a time, and the loads of it and of both.
 TEST_P(Memory, OfQuantitiesIsThatOfTheirDuals) {
   Quantity mean;
@@ -107,6 +125,24 @@ TEST_P(Memory, OfQuantitiesIsThatOfTheirDuals) {
   Problem pressed = elastic(GetParam(), n, n);
   pressed.quantities = {mean};
   expect_bound(pressed);
+}
+
+/// A disc that is small on its triangle is cut out of it cell by cell.
+TEST_P(Memory, OfMeansOverTinyDiscs) {
+  Quantity mean;
+  mean.name = "mean";
+  const Field disc = problems::formula("(x - 0.2064)^2 + (y - 0.5288)^2 < 1e-7 ? 3e6 : 0");
+  mean.density = VectorField(disc);
+  Problem sagging = membrane(GetParam(), 4, 4);
+  sagging.quantities = {mean};
+  mean.density = VectorField(disc, Field(0));
+  Problem pressed = elastic(GetParam(), 4, 4);
+  pressed.quantities = {mean};
+  for (const Problem& problem : {sagging, pressed}) {
+    const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}).memory_bytes;
+    EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes),
+              predicted);
+  }
 }
 
 /// A comb of so many teeth, as far from each other as they are wide.

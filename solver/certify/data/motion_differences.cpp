@@ -72,6 +72,11 @@ class Motions {
 
   bool counts(int edge) const { return mesh_.edge_triangles[edge][1] >= 0 || is_fixed_[edge]; }
 
+  double edges_that_count(int t) const {
+    return static_cast<double>(
+        std::ranges::count_if(mesh_.triangle_edges[t], [this](int edge) { return counts(edge); }));
+  }
+
   /// What the motion of a triangle is at a point.
   Eigen::Matrix<double, D, kOwn> motion_at(int t, const Point& x) const {
     Eigen::Matrix<double, D, kOwn> motion;
@@ -107,13 +112,21 @@ class Motions {
     ElementSum sum;
     sum.size = size();
     sum.per_element = 2 * kOwn;
-    for (int edge = 0; edge < static_cast<int>(mesh_.edges.size()); ++edge)
-      if (counts(edge)) add(sum, mesh_.edge_triangles[edge], of_edge(edge), middle(edge));
-    for (int t = 0; shift > 0 && t < discrete_.triangles(); ++t) {
-      if (force_on(t) == 0 || first(t) < 0) continue;
-      OfPair own = OfPair::Zero();
-      own.diagonal().template head<kOwn>() = -shift * force_on(t) * largest_square();
-      add(sum, {t, -1}, own, mesh_.centroid(t));
+    const std::size_t edges = mesh_.edges.size();
+    sum.unknowns.reserve(edges * 2 * kOwn);
+    sum.matrix_of.reserve(edges);
+    sum.matrices.reserve(edges * OfPair::SizeAtCompileTime);
+    sum.centres.reserve(edges);
+    for (int edge = 0; edge < static_cast<int>(mesh_.edges.size()); ++edge) {
+      if (!counts(edge)) continue;
+      OfPair own = of_edge(edge);
+      const auto& triangles = mesh_.edge_triangles[edge];
+      // The edges of a triangle share what is taken off for it.
+      for (int side = 0; side < 2; ++side)
+        if (const int t = triangles[side]; t >= 0)
+          own.diagonal().template segment<kOwn>(side * kOwn) -=
+              shift * force_on(t) / edges_that_count(t) * largest_square();
+      add(sum, triangles, own, middle(edge));
     }
     return sum;
   }
@@ -134,9 +147,7 @@ class Motions {
     Eigen::Matrix<double, 2 * D, 2 * kOwn> at_ends = decltype(at_ends)::Zero();
     for (const int t : {one, other}) {
       if (t < 0) continue;
-      const auto& own_edges = mesh_.triangle_edges[t];
-      const auto count = std::ranges::count_if(own_edges, [&](int own) { return counts(own); });
-      weight += static_cast<double>(count) * laws_.whole(t).softest *
+      weight += edges_that_count(t) * laws_.whole(t).softest *
                 std::pow(remainders_[t].on_edges[mesh_.local_edge(t, edge)], 2);
       for (int end = 0; end < 2; ++end)
         at_ends.template block<D, kOwn>(D * end, t == one ? 0 : kOwn) =
@@ -155,11 +166,10 @@ class Motions {
 
   /// A number that no quotient is below, and hardly above which the least is; 0 if doubles do not tell.
   double least_quotient(Progress& progress) const {
-    const ElementSum differences = quotient(0);
-    if (fills_in(differences, progress)) return 0;
     try {
-      double known = kBelow * foreseen(differences, progress);
-      for (int tries = 0; tries < kMostTries && std::isfinite(known); ++tries, known /= 2)
+      double known = kBelow * foreseen(progress);
+      if (!std::isfinite(known)) return 0;
+      for (int tries = 0; known > 0 && tries < kMostTries; ++tries, known /= 2)
         if (is_below_all(known, progress)) return known;
     } catch (const NotPositiveDefinite&) {
       // Nor is the left side by itself, but for rounding.
@@ -180,6 +190,12 @@ class Motions {
     return numbers > kOwn * kOwn * most;
   }
 
+  std::optional<Factor> factor_of_differences(Progress& progress) const {
+    const ElementSum differences = quotient(0);
+    if (fills_in(differences, progress)) return std::nullopt;
+    return multifrontal(differences, 0, progress);
+  }
+
   bool is_below_all(double number, Progress& progress) const {
     try {
       multifrontal(quotient(number), 0, progress);
@@ -189,12 +205,13 @@ class Motions {
     }
   }
 
-  /// By the inverse iteration.
-  double foreseen(const ElementSum& differences, Progress& progress) const {
+  /// By the inverse iteration; 0 where slivers do not let it.
+  double foreseen(Progress& progress) const {
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(size());
     for (int t = 0; t < discrete_.triangles(); ++t)
       if (first(t) >= 0) squares.segment<kOwn>(first(t)) = force_on(t) * largest_square();
-    const Factor factor = multifrontal(differences, 0, progress);
+    const std::optional<Factor> factor = factor_of_differences(progress);
+    if (!factor) return 0;
     Factor::Workspace workspace;
     std::mt19937 engine(1);
     Eigen::VectorXd motion(size());
@@ -203,7 +220,7 @@ class Motions {
     for (int step = 0; step < kMotionSteps; ++step) {
       const Eigen::VectorXd work = squares.cwiseProduct(motion);
       motion = work;
-      factor.solve(motion, workspace, progress);
+      factor->solve(motion, workspace, progress);
       const double square = squares.dot(motion.cwiseAbs2());
       quotient = motion.dot(work) / square;
       motion /= std::sqrt(square);
