@@ -1,5 +1,7 @@
 #include "server/handlers/shared_results.hpp"
 
+#include <malloc.h>
+
 #include "server/http/error.hpp"
 #include "server/http/thread_pool.hpp"
 
@@ -41,6 +43,8 @@ class SharedResults::Held {
   }
   ~Held() {
     result_.reset();
+    // Each of many threads may have been the one that read; the allocator would keep as much for each.
+    malloc_trim(0);
     results_.give_back(bytes_);
   }
 
