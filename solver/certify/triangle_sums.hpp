@@ -38,8 +38,8 @@ struct TriangleSums {
   TriangleSums& operator+=(const TriangleSums& other);
   /// Strains of the norm ζ in v that are not among the sums.
   void add_unknown_strain(double zeta);
-  /// Of fields made of a displacement with values of at most this size, on the triangle of the map.
-  void set_rounding(const AffineMap& map, const LawPiece& law, double largest_value);
+  /// That of fields made of a displacement with values of at most this size, on the triangle of the map.
+  void add_rounding(const AffineMap& map, const LawPiece& law, double largest_value);
   double norm_of_gap() const { return std::sqrt(gap + slack) + rounding; }
 };
 

@@ -150,8 +150,7 @@ bool are_loads_uniform(const Problem& problem) {
 
 /// What is not known of loads that may have any form: what carries it through the motions of the triangles,
 /// the factor of the differences across all edges and what it is made of
-/// (certify/data/motion_differences.hpp).
-/// That of a membrane is so small that it takes no more than what is gone by then.
+/// (certify/data/motion_differences.hpp). That of a membrane takes no more than what is gone by then.
 double carrying(const Problem& problem, const Spaces& spaces, double triangles) {
   if (spaces.components == 1 || are_loads_uniform(problem)) return 0;
   constexpr double motions = 3;

@@ -39,29 +39,36 @@ struct Column {
   long double energy() const { return -sinking() * p / 2; }
 };
 
-void expect_enclosed(const Column& column, Scheme scheme, Pattern pattern) {
+/// Whether there was anything to be enclosed: where rounding leaves too little, no bound is claimed.
+bool expect_enclosed(const Column& column, Scheme scheme, Pattern pattern) {
   Summary summary;
   try {
     summary = solve(column.problem(scheme, pattern), {ActiveSet{}, std::nullopt}).summary;
   } catch (const std::runtime_error&) {
-    return;  // rounding leaves nothing of the matrix, and says so
+    return false;  // rounding leaves nothing of the matrix, and says so
   }
-  ASSERT_TRUE(summary.error_bound);
-  if (!summary.error_bound->guaranteed) return;
+  if (!summary.error_bound || !summary.error_bound->guaranteed) {
+    EXPECT_TRUE(summary.error_bound);
+    return false;
+  }
   EXPECT_LE(summary.error_bound->energy_lower, column.energy());
   EXPECT_GE(summary.error_bound->energy_upper, column.energy());
   const long double work = 2 * -column.energy();
   EXPECT_LE(summary.certified->work.lower, work);
   EXPECT_GE(summary.certified->work.upper, work);
-  ASSERT_EQ(summary.quantities.size(), 1u);
-  if (!summary.quantities[0].guaranteed) return;
-  EXPECT_LE(summary.quantities[0].lower, -column.sinking());
-  EXPECT_GE(summary.quantities[0].upper, -column.sinking());
+  EXPECT_EQ(summary.quantities.size(), 1u);
+  for (const EnclosedQuantity& top : summary.quantities) {
+    if (!top.guaranteed) continue;
+    EXPECT_LE(top.lower, -column.sinking());
+    EXPECT_GE(top.upper, -column.sinking());
+  }
+  return true;
 }
 
 /// Near incompressible the volume is a difference of entries of C; of flat triangles gradients are
 /// differences of values that are much alike.
 TEST(Rounding, IsPaidForByTheBound) {
+  int enclosed = 0;
   for (const double poisson : {-0.9, 0.25, 0.4375, 0.4999, 0.499999, 0.4999999})
     for (const double height : {1., std::exp2(-5), std::exp2(-10)})
       for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
@@ -69,8 +76,9 @@ TEST(Rounding, IsPaidForByTheBound) {
           SCOPED_TRACE("ν = " + std::to_string(poisson) + ", height " + std::to_string(height) + ", scheme " +
                        std::to_string(static_cast<int>(scheme)) + ", pattern " +
                        std::to_string(static_cast<int>(pattern)));
-          expect_enclosed({height, poisson}, scheme, pattern);
+          enclosed += expect_enclosed({height, poisson}, scheme, pattern);
         }
+  EXPECT_GE(enclosed, 80) << "of 108";
 }
 
 /// Of an ordinary body it takes no digit that anybody would miss.

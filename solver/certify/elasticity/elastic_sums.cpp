@@ -161,7 +161,7 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
             : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
   add_work_of_load(t, map, rule, given, inner, sums);
   add_rest_of_lifts(t, map, laws.whole(t), sums);
-  sums.set_rounding(map, laws.whole(t), bound_of_quadratic(given.displacement.reshaped(2, 6)));
+  sums.add_rounding(map, laws.whole(t), bound_of_quadratic(given.displacement.reshaped(2, 6)));
   return sums;
 }
 

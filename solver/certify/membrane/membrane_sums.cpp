@@ -44,13 +44,13 @@ void TriangleSums::add_unknown_strain(double zeta) {
 /// Rounding changes the entries of C by a part of the largest, which is that times their contrast of the
 /// smallest; what it changes of a Jacobian J counts |J|²/det J times in what is mapped there and back.
 /// Gradients are differences of values, however much alike.
-void TriangleSums::set_rounding(const AffineMap& map, const LawPiece& law, double largest_value) {
-  const double contrast = law.is_known() ? law.softest * law.stiffest : 1,
-               stretch = map.jacobian.squaredNorm() / map.determinant;
-  const double of_fields = contrast * stretch * stretch * (std::sqrt(2 * strain) + std::sqrt(gap));
-  const double of_gradients = law.is_known() ? std::sqrt(law.stiffest * map.determinant) *
-                                                   map.jacobian.norm() / map.determinant * largest_value
-                                             : 0;
+void TriangleSums::add_rounding(const AffineMap& map, const LawPiece& law, double largest_value) {
+  const double stretch = map.jacobian.squaredNorm() / map.determinant;
+  double of_fields = stretch * stretch * (std::sqrt(2 * strain) + std::sqrt(gap)), of_gradients = 0;
+  if (law.is_known()) {
+    of_fields *= law.softest * law.stiffest;
+    of_gradients = std::sqrt(law.stiffest * stretch) * largest_value;
+  }
   rounding = kRoundingOfFields * (of_fields + of_gradients);
   energy_slack += rounding * (std::sqrt(2 * strain) + rounding);
 }
@@ -139,7 +139,7 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
                          rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
     sums.add_unknown_strain(zeta);
   }
-  sums.set_rounding(AffineMap(discrete_.mesh.corners(t)), laws.whole(t),
+  sums.add_rounding(AffineMap(discrete_.mesh.corners(t)), laws.whole(t),
                     bound_of_quadratic(displacement_on<1>(terms_, t)));
   return sums;
 }
