@@ -19,11 +19,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr auto soon = 10s;  // the checks of a solve lie further apart
-#else
-constexpr auto soon = 1s;
-#endif
+constexpr auto soon = sanitized ? 10s : 1s;  // the checks of a solve lie further apart under a sanitizer
 
 class DaemonTest : public testing::Test {
  protected:

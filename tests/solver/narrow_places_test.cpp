@@ -156,7 +156,7 @@ TEST(NarrowPlaces, RefuseATooNarrowDomainAtOnceAndSayWhere) {
          {std::pair(beside(1e-7), "/domain/vertices/0"), std::pair(wedge(1e-5), "/domain/vertices/0"),
           std::pair(strip(1e7), "/domain/vertices/0"), std::pair(zigzag(300, 1e-3), "/domain/vertices/0")}) {
       std::vector<Fault> faults;
-      EXPECT_LT(seconds_of([&] { faults = validate(scaled(polygon, scale)); }), 1);
+      EXPECT_LT(seconds_of([&, &narrow = polygon] { faults = validate(scaled(narrow, scale)); }), 1);
       ASSERT_EQ(faults.size(), 1u);
       EXPECT_EQ(faults[0].where.substr(0, 17), std::string(pointer).substr(0, 17));
       EXPECT_NE(faults[0].detail.find("more than 300,000 triangles"), std::string::npos);

@@ -1,5 +1,6 @@
 // Meshes of polygons: what was asked for is kept, whatever the units; and every fault of a polygon.
 #include "mesh/polygon.hpp"
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
@@ -73,7 +74,7 @@ TEST(PolygonMesh, KeepsEverySideWithItsName) {
     if (clockwise) {
       std::ranges::reverse(named.vertices);
       // Edge i now joins what were the vertices n−1−i and n−2−i.
-      std::ranges::rotate(named.sides, named.sides.end() - 1);
+      std::rotate(named.sides.begin(), named.sides.end() - 1, named.sides.end());
       std::ranges::reverse(named.sides);
     }
     const Mesh mesh = polygon_mesh(named, 0.3);

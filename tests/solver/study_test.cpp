@@ -156,9 +156,9 @@ TEST(Study, MeasuresElasticErrorsInTheNormOfTheLaw) {
     study.exact.displacement =
         VectorField(problems::function([=](const Point& x) { return smooth.u(x).x(); }),
                     problems::function([=](const Point& x) { return smooth.u(x).y(); }));
-    for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 1), std::pair(0, 1)})
+    for (const auto& ij : {std::pair(0, 0), std::pair(1, 1), std::pair(0, 1)})
       study.exact.stress.push_back(
-          problems::function([=](const Point& x) { return smooth.stress(x)(i, j); }));
+          problems::function([=](const Point& x) { return smooth.stress(x)(ij.first, ij.second); }));
     const std::vector<StudyRow> rows = run(smooth.problem(Scheme::conforming, 4), study);
     for (const StudyRow& row : rows) {
       ASSERT_EQ(row.error, "");
