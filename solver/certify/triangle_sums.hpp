@@ -87,6 +87,7 @@ class MembraneSums {
   const Discretization& discrete_;
   std::vector<Term> terms_;
   const LoadProjection& load_;
+  bool is_balanced_;                        ///< σ_h by itself, on all triangles
   const AdmissiblePair* second_ = nullptr;  ///< against that of the only term
   const Eigen::MatrixXd* change_ = nullptr;
 };
@@ -119,20 +120,29 @@ class ElasticSums {
   /// has a few shapes, another hardly the same twice.
   struct Shape {
     int seen = 0;
-    std::unique_ptr<const JohnsonMercierNorms> norms;
+    std::shared_ptr<const JohnsonMercierNorms> norms;
   };
 
   using Inner = Eigen::Matrix<double, 2 * JohnsonMercierRule::kInner, 1>;
 
+  /// Sums that were found along with those of an earlier triangle.
+  struct Found {
+    int triangle = -1;
+    TriangleSums sums;
+    Inner inner = Inner::Zero();
+  };
+  /// So many triangles are looked at for others of the same shape.
+  static constexpr int kAhead = 128;
+
   Given given_on(int t, const AffineMap& map) const;
-  const JohnsonMercierNorms* norms_of(int t, const AffineMap& map, LawField<2>& law);
-  TriangleSums by_norms(const JohnsonMercierNorms& norms, const Given& given, Inner& inner) const;
+  std::shared_ptr<const JohnsonMercierNorms> norms_of(int t, const AffineMap& map, LawField<2>& law);
+  const Found& by_norms(int t, const std::shared_ptr<const JohnsonMercierNorms>& norms);
   TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
                                               const JohnsonMercierRule& rule) const;
-  void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
-                        const Inner& inner, TriangleSums& sums) const;
+  void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
+                        const Quadratic<2>& displacement, const Inner& inner, TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
@@ -141,6 +151,7 @@ class ElasticSums {
   const bool has_load_;
   bool needs_all_ = false;
   PerShape<Shape> shapes_;
+  std::array<Found, kAhead> found_;    ///< that of a triangle by its number's rest
   JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
 };
 

@@ -1,5 +1,7 @@
 #include "certify/displacement/star_relaxation.hpp"
 
+#include <boost/container_hash/hash.hpp>
+
 #include <Eigen/Cholesky>
 
 #include "mesh/mesh.hpp"
@@ -16,6 +18,13 @@ struct Place {
   std::array<double, 3> edge_signs;
 };
 
+/// The matrix of a star, factored. On a mesh of squares of one material most stars have the same.
+struct StarFactor {
+  /// Of its triangles the matrices, the rows that their functions have in the star, and their signs.
+  std::vector<int> description;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+
 class Stars {
  public:
   Stars(const Mesh& mesh, const TriangleForms& forms)
@@ -30,14 +39,15 @@ class Stars {
     collect(point);
     if (own_.empty()) return;
     const auto size = static_cast<Eigen::Index>(own_.size());
-    matrix_.setZero(size, size);
-    right_.setZero(size);
-    for (const int t : triangles_[point]) add(t);
-    const Eigen::LLT<Eigen::MatrixXd> factor(matrix_);
+    places_.clear();
+    for (const int t : triangles_[point]) places_.push_back(place_of(t));
+    const Eigen::LLT<Eigen::MatrixXd>& factor = factor_of(triangles_[point]);
     if (factor.info() == Eigen::Success) {
-      const Eigen::VectorXd step = factor.solve(right_);
-      if (step.allFinite())
-        for (Eigen::Index i = 0; i < size; ++i) x_[own_[i]] += step[i];
+      right_.setZero(size);
+      for (std::size_t i = 0; i < places_.size(); ++i) add_slope(triangles_[point][i], places_[i]);
+      factor.solveInPlace(right_);
+      if (right_.allFinite())
+        for (Eigen::Index i = 0; i < size; ++i) x_[own_[i]] += right_[i];
     }
     for (const int unknown : own_) column_[unknown] = -1;
   }
@@ -80,28 +90,50 @@ class Stars {
     return i < of_points ? 1 : place.edge_signs[(i - of_points) / forms_.per_edge];
   }
 
-  void add(int t) {
-    const Place place = place_of(t);
+  const Eigen::LLT<Eigen::MatrixXd>& factor_of(const std::vector<int>& triangles) {
+    description_.clear();
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      description_.push_back(forms_.matrix_of[triangles[i]]);
+      for (const int unknown : places_[i].unknowns) description_.push_back(column_[unknown]);
+      for (const double sign : places_[i].edge_signs) description_.push_back(sign < 0);
+    }
+    StarFactor& known = known_[boost::hash_range(description_.begin(), description_.end()) % known_.size()];
+    if (known.description == description_) return known.factor;
+    known.description = description_;
+    matrix_.setZero(static_cast<Eigen::Index>(own_.size()), static_cast<Eigen::Index>(own_.size()));
+    for (std::size_t i = 0; i < places_.size(); ++i) add_matrix(triangles[i], places_[i]);
+    known.factor.compute(matrix_);
+    return known.factor;
+  }
+
+  void add_matrix(int t, const Place& place) {
     const Matrix& matrix = forms_.matrices[forms_.matrix_of[t]];
-    FormVector x;
-    for (int i = 0; i < x.size(); ++i) x[i] = sign(place, i) * x_[place.unknowns[i]];
-    const FormVector slope = forms_.slopes[t] + matrix * x;
-    for (int i = 0; i < x.size(); ++i) {
+    for (int i = 0; i < TriangleForms::kLocal; ++i) {
       const int row = column_[place.unknowns[i]];
       if (row < 0) continue;
-      right_[row] -= sign(place, i) * slope[i];
-      for (int j = 0; j < x.size(); ++j) {
+      for (int j = 0; j < TriangleForms::kLocal; ++j) {
         const int column = column_[place.unknowns[j]];
         if (column >= 0) matrix_(row, column) += sign(place, i) * sign(place, j) * matrix(i, j);
       }
     }
   }
 
+  void add_slope(int t, const Place& place) {
+    FormVector x;
+    for (int i = 0; i < x.size(); ++i) x[i] = sign(place, i) * x_[place.unknowns[i]];
+    const FormVector slope = forms_.slopes[t] + forms_.matrices[forms_.matrix_of[t]] * x;
+    for (int i = 0; i < x.size(); ++i)
+      if (const int row = column_[place.unknowns[i]]; row >= 0) right_[row] -= sign(place, i) * slope[i];
+  }
+
   const Mesh& mesh_;
   const TriangleForms& forms_;
   const std::vector<std::vector<int>> triangles_;
-  std::vector<int> column_;  ///< of each unknown in the star's matrix, or -1
-  std::vector<int> own_;     ///< the unknowns of the star
+  std::vector<int> column_;    ///< of each unknown in the star's matrix, or -1
+  std::vector<int> own_;       ///< the unknowns of the star
+  std::vector<Place> places_;  ///< of its triangles' functions
+  std::vector<int> description_;
+  std::array<StarFactor, 64> known_;
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd right_, x_;
 };

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+
+#include <cblas.h>
 
 #include "certify/data/balanced_load.hpp"
 #include "certify/elasticity/johnson_mercier_data.hpp"
@@ -43,12 +46,13 @@ ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
 }
 
 /// The operators of the triangle's shape, or null.
-const JohnsonMercierNorms* ElasticSums::norms_of(int t, const AffineMap& map, LawField<2>& law) {
+std::shared_ptr<const JohnsonMercierNorms> ElasticSums::norms_of(int t, const AffineMap& map,
+                                                                 LawField<2>& law) {
   Shape& shape = shapes_(t, [] { return Shape(); });
   if (++shape.seen == kOften)
-    shape.norms = std::make_unique<const JohnsonMercierNorms>(johnson_mercier_rule(discrete_.spaces(), 6),
+    shape.norms = std::make_shared<const JohnsonMercierNorms>(johnson_mercier_rule(discrete_.spaces(), 6),
                                                               map, SymmetricLaw(law(map({0, 0})).compliance));
-  return shape.norms.get();
+  return shape.norms;
 }
 
 /// The strains of what is lifted into the triangle.
@@ -67,8 +71,10 @@ std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap&
 /// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does
 /// no more work on the rest of v than the product of their norms.
 void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
-                                   const Given& given, const Inner& inner, TriangleSums& sums) const {
+                                   const Quadratic<2>& displacement, const Inner& inner,
+                                   TriangleSums& sums) const {
   if (!has_load_) return;
+  const bool lifted = is_lifted(terms_, t);
   const ProjectedLoad& load = load_[t];
   const Quadratic<2> quadratic = load.projection;
   double work = 0, rest_square = 0;
@@ -77,16 +83,16 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
     const double weight = rule.places[q].weight * map.determinant;
     Eigen::Vector2d rest = inner.reshaped(2, JohnsonMercierRule::kInner) *
                            rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
-    if (!given.lifted.empty()) {
+    if (lifted) {
       Tensor<2> slope = Tensor<2>::Zero();
       add_lifts<2>(terms_, t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
     }
-    work += weight * (quadratic * at.basis).dot(given.displacement.reshaped(2, 6) * at.basis + rest);
+    work += weight * (quadratic * at.basis).dot(displacement * at.basis + rest);
     rest_square += weight * rest.squaredNorm();
   }
   sums.energy -= work;
-  sums.energy_slack += load.rest * std::sqrt(rest_square) +
-                       load.uncertain_work * bound_of_quadratic(given.displacement.reshaped(2, 6));
+  sums.energy_slack +=
+      load.rest * std::sqrt(rest_square) + load.uncertain_work * bound_of_quadratic(displacement);
 }
 
 void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law,
@@ -100,24 +106,52 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
   sums.add_unknown_strain(zeta);
 }
 
-TriangleSums ElasticSums::by_norms(const JohnsonMercierNorms& norms, const Given& given, Inner& inner) const {
-  constexpr int most = JohnsonMercier::kData + kMaxLocal + 12;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> z(norms.gap.cols());
-  z << given.data, given.stress, given.displacement;
-  const auto square = [](const Eigen::MatrixXd& factor, const auto& part) {
-    return (factor.triangularView<Eigen::Upper>() * part).squaredNorm();
+/// Of the triangle and all others of its shape that come soon after: many columns in one product take a
+/// fraction of the time.
+const ElasticSums::Found& ElasticSums::by_norms(int t,
+                                                const std::shared_ptr<const JohnsonMercierNorms>& norms) {
+  const auto place = [this](int triangle) -> Found& { return found_[triangle % kAhead]; };
+  if (place(t).triangle == t) return place(t);
+  std::vector<int> alike;
+  const int end = std::min(t + kAhead, discrete_.triangles());
+  for (int other = t; other < end; ++other)
+    if (!is_lifted(terms_, other) && shapes_(other, [] { return Shape(); }).norms == norms)
+      alike.push_back(other);
+  const auto count = static_cast<Eigen::Index>(alike.size());
+  Eigen::MatrixXd z(norms->gap.cols(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Given given = given_on(alike[i], AffineMap(discrete_.mesh.corners(alike[i])));
+    z.col(i) << given.data, given.stress, given.displacement;
+  }
+  const auto squares = [](const Eigen::MatrixXd& factor, Eigen::MatrixXd part) -> Eigen::VectorXd {
+    const int rows = static_cast<int>(part.rows()), columns = static_cast<int>(part.cols());
+    cblas_dtrmm(CblasColMajor, CblasLeft, CblasUpper, CblasNoTrans, CblasNonUnit, rows, columns, 1,
+                factor.data(), rows, part.data(), rows);
+    return part.colwise().squaredNorm();
   };
-  const auto stresses = z.head(norms.correction.cols());
-  if (has_load_) inner = norms.inner * z;
-  TriangleSums sums;
-  sums.gap = square(norms.gap, z);
-  sums.strain = sums.energy = square(norms.strain, z) / 2;
-  if (!needs_all_) return sums;
-  sums.direct_gap = square(norms.direct_gap, z);
-  sums.correction = square(norms.correction, stresses);
-  sums.skew = square(norms.skew, given.stress);
-  sums.stress = square(norms.stress, given.stress);
-  return sums;
+  const Eigen::Index stresses = norms->correction.cols(), of_scheme = norms->stress.cols();
+  const Eigen::VectorXd gap = squares(norms->gap, z), strain = squares(norms->strain, z) / 2;
+  Eigen::VectorXd direct_gap, correction, skew, stress;
+  if (needs_all_) {
+    direct_gap = squares(norms->direct_gap, z);
+    correction = squares(norms->correction, z.topRows(stresses));
+    skew = squares(norms->skew, z.middleRows(stresses - of_scheme, of_scheme));
+    stress = squares(norms->stress, z.middleRows(stresses - of_scheme, of_scheme));
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Found& found = place(alike[i]);
+    found.triangle = alike[i];
+    if (has_load_) found.inner = norms->inner * z.col(i);
+    TriangleSums& sums = found.sums = {};
+    sums.gap = gap[i];
+    sums.strain = sums.energy = strain[i];
+    if (!needs_all_) continue;
+    sums.direct_gap = direct_gap[i];
+    sums.correction = correction[i];
+    sums.skew = skew[i];
+    sums.stress = stress[i];
+  }
+  return place(t);
 }
 
 TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
@@ -145,23 +179,28 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRu
 
 TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
   const AffineMap map(discrete_.mesh.corners(t));
-  Given given = given_on(t, map);
   const bool lifted = is_lifted(terms_, t), constant_law = discrete_.element.has_constant_material();
-  const JohnsonMercierNorms* norms = lifted || !constant_law ? nullptr : norms_of(t, map, law);
   const int of_fields = degree_of_fields(lifted);
   const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
   const std::vector<LawPiece> pieces = laws.cut(t);
   if (!pieces.empty()) rule_of_pieces_.fill(discrete_.spaces(), pieces, of_fields, laws.tolerance());
   const JohnsonMercierRule& rule =
       pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
-  if (lifted) given.lifted = lifted_strains(t, map, rule);
-  Inner inner;
-  TriangleSums sums =
-      norms ? by_norms(*norms, given, inner)
-            : by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
-  add_work_of_load(t, map, rule, given, inner, sums);
+  Inner inner = Inner::Zero();
+  TriangleSums sums;
+  if (const auto norms = lifted || !constant_law ? nullptr : norms_of(t, map, law)) {
+    const Found& found = by_norms(t, norms);
+    sums = found.sums;
+    inner = found.inner;
+  } else {
+    Given given = given_on(t, map);
+    if (lifted) given.lifted = lifted_strains(t, map, rule);
+    sums = by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
+  }
+  const Quadratic<2> displacement = displacement_on<2>(terms_, t);
+  add_work_of_load(t, map, rule, displacement, inner, sums);
   add_rest_of_lifts(t, map, laws.whole(t), sums);
-  sums.add_rounding(map, laws.whole(t), bound_of_quadratic(given.displacement.reshaped(2, 6)));
+  sums.add_rounding(map, laws.whole(t), bound_of_quadratic(displacement));
   return sums;
 }
 
