@@ -41,11 +41,41 @@ std::vector<WeightedPoint> collapsed_rule(int n) {
   return rule;
 }
 
+namespace {
+
+/// Three points with one weight, the corners of the triangle drawn near to its centroid.
+std::vector<WeightedPoint> three_points(double distance, double weight) {
+  const double other = 1 - 2 * distance;
+  return {{Point(distance, distance), weight},
+          {Point(other, distance), weight},
+          {Point(distance, other), weight}};
+}
+
+/// Strang and Fix (1973), degree 2 with three points and degree 4 with six; all lie inside.
+std::vector<WeightedPoint> rule_of_second_degree() {
+  return three_points(1. / 6, 1. / 6);
+}
+
+std::vector<WeightedPoint> rule_of_fourth_degree() {
+  const double root = std::sqrt(10.), of_place = std::sqrt(38 - 44 * std::sqrt(0.4)),
+               of_weight = std::sqrt(213125 - 53320 * root);
+  std::vector<WeightedPoint> rule = three_points((8 - root + of_place) / 18, (620 + of_weight) / 7440);
+  const std::vector<WeightedPoint> others =
+      three_points((8 - root - of_place) / 18, (620 - of_weight) / 7440);
+  rule.insert(rule.end(), others.begin(), others.end());
+  return rule;
+}
+
+}  // namespace
+
 const std::vector<WeightedPoint>& rule_of_degree(int degree) {
-  static const std::vector<WeightedPoint> five = weighted(triangle_rule()),
+  static const std::vector<WeightedPoint> two = rule_of_second_degree(), four = rule_of_fourth_degree(),
+                                          five = weighted(triangle_rule()),
                                           six = weighted(fine_triangle_rule()),
                                           eight = weighted(finest_triangle_rule()), ten = collapsed_rule(6),
                                           eighteen = collapsed_rule(10), thirty = collapsed_rule(16);
+  if (degree <= 2) return two;
+  if (degree <= 4) return four;
   if (degree <= 5) return five;
   if (degree <= 6) return six;
   if (degree <= 8) return eight;

@@ -14,12 +14,13 @@ Element::Element(const Problem& problem)
   for (auto& row : moments_)
     for (RowMatrix& moment : row) moment = RowMatrix::Zero(n, n);
   for (LocalVectors& moment : hat_moments_) moment = LocalVectors::Zero(2, n);
+  of_loads_ = Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, spaces_.displacements() / spaces_.components);
   for (int q = 0; q < TriangleRule::size; ++q) {
     const Point& x = triangle_rule().points[q];
     const double weight = triangle_rule().weights[q];
     tau_[q] = spaces_.row.reference_values(x);
-    v_[q] = triangle_basis(spaces_.order, x);
-    p2_[q] = quadratic_basis(x);
+    of_loads_ += weight * quadratic_basis(x) * triangle_basis(spaces_.order, x).transpose();
+    arms_of_loads_ += weight * quadratic_basis(x) * (x - Point(1. / 3, 1. / 3)).transpose();
     for (int k = 0; k < 2; ++k)
       for (int l = 0; l < 2; ++l) moments_[k][l] += weight * tau_[q].row(k).transpose() * tau_[q].row(l);
     const LocalVector hats = triangle_basis(1, x);
@@ -106,17 +107,14 @@ LocalMatrix Element::stress_mass(const Mesh& mesh, int triangle) const {
 TriangleLoad Element::load(const Mesh& mesh, int triangle,
                            const Eigen::Ref<const Eigen::MatrixXd>& quadratic) const {
   const AffineMap map(mesh.corners(triangle));
-  const Point centroid = mesh.centroid(triangle);
   const int d = spaces_.components;
-  TriangleLoad load{LocalVector::Zero(spaces_.displacements())};
-  for (int q = 0; q < TriangleRule::size; ++q) {
-    const Vector arm = turned_left(map(triangle_rule().points[q]) - centroid);
-    const double weight = triangle_rule().weights[q] * map.determinant;
-    for (int c = 0; c < d; ++c) {
-      const double f = quadratic.row(c).dot(p2_[q]);
-      for (int i = 0; i < v_[q].size(); ++i) load.force[i * d + c] += weight * f * v_[q][i];
-      if (d == 2) load.couple += weight * f * arm[c];
-    }
+  TriangleLoad load{LocalVector(spaces_.displacements())};
+  for (int c = 0; c < d; ++c) {
+    for (int i = 0; i < of_loads_.cols(); ++i)
+      load.force[i * d + c] = map.determinant * quadratic.row(c).dot(of_loads_.col(i));
+    if (d == 2)
+      load.couple +=
+          map.determinant * turned_left(map.jacobian * (quadratic.row(c) * arms_of_loads_).transpose())[c];
   }
   return load;
 }

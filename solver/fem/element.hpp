@@ -54,8 +54,9 @@ class Element {
   bool constant_material_;
   Compliance compliance_;                             ///< C, if constant
   std::array<LocalVectors, TriangleRule::size> tau_;  ///< τ̂_a of one row at the points of the rule
-  std::array<LocalVector, TriangleRule::size> v_;     ///< scalar v_i at the points of the rule
-  std::array<Eigen::Matrix<double, 6, 1>, TriangleRule::size> p2_;  ///< the basis of P2 there
+  /// (φ, v_i) over the reference triangle with the basis φ of P2 and scalar v_i; ∫ φ (x − its centroid).
+  Eigen::Matrix<double, 6, Eigen::Dynamic> of_loads_;
+  Eigen::Matrix<double, 6, 2> arms_of_loads_ = Eigen::Matrix<double, 6, 2>::Zero();
   RowMatrix moments_[2][2];                  ///< ∫ τ̂_k τ̂_lᵀ for the components k, l of a row
   std::array<LocalVectors, 3> hat_moments_;  ///< ∫ φ_z τ̂_a for the corners z
 };

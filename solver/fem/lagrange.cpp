@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "fem/quadrature.hpp"
+#include "fem/cubature.hpp"
 
 namespace signorini {
 
@@ -37,6 +37,16 @@ Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference) {
   Eigen::Matrix<double, 6, 1> values;
   values << l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1), 4 * l1 * l2, 4 * l2 * l0, 4 * l0 * l1;
   return values;
+}
+
+const Eigen::Matrix<double, 6, 6>& quadratic_mass() {
+  static const Eigen::Matrix<double, 6, 6> mass = [] {
+    Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
+    for (const auto& [point, weight] : rule_of_degree(4))
+      sum += weight * quadratic_basis(point) * quadratic_basis(point).transpose();
+    return sum;
+  }();
+  return mass;
 }
 
 LocalVector edge_moments(int order, const std::function<double(double s)>& function) {

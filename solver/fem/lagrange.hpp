@@ -20,6 +20,9 @@ Eigen::Matrix<double, 2, 3> hat_gradients(const AffineMap& map);
 /// The six functions of P2 on the reference triangle: 1 at a corner, or in the middle of edge 0, 1, 2.
 Eigen::Matrix<double, 6, 1> quadratic_basis(const Point& reference);
 
+/// ∫ φ_i φ_j of them over the reference triangle.
+const Eigen::Matrix<double, 6, 6>& quadratic_mass();
+
 /// ∫ function φ_j ds over s ∈ [0, 1], for the functions of edge_basis.
 LocalVector edge_moments(int order, const std::function<double(double s)>& function);
 

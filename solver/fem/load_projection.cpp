@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
+
+#include <Eigen/Geometry>
 
 #include "fem/projection.hpp"
 #include "fem/raviart_thomas.hpp"
@@ -18,6 +22,29 @@ constexpr int kFirstCells = 4;
 
 /// Of all the others together, for a formula of a few operations.
 constexpr int kCellsOfRoughLoads = 20'000;
+
+/// So many triangles, mostly neighbours, are looked at together before each is by itself.
+constexpr int kNeighbours = 64;
+
+/// The load where that has the same value all over a box, as beside a jump: most loads do not vary else.
+/// Returns false if it may vary there.
+bool is_constant_on(const VectorField& body, const Eigen::AlignedBox2d& box, double largest,
+                    ProjectedLoad& load) {
+  for (int c = 0; c < body.size(); ++c) {
+    const std::optional<double> value = constant_on(body.fields()[c], box, kTolerance.rounding * largest);
+    if (!value) return false;
+    load.projection.row(c).setConstant(*value);
+  }
+  load.balanced = load.projection;
+  return true;
+}
+
+Eigen::AlignedBox2d box_around(const Mesh& mesh, int begin, int end) {
+  Eigen::AlignedBox2d box;
+  for (int t = begin; t < end; ++t)
+    for (const int point : mesh.triangles[t]) box.extend(mesh.points[point]);
+  return box;
+}
 
 /// Of what f has between P1 and P2: if the rest is larger where f jumps, that part is left with it.
 constexpr double kMuch = 0.2;
@@ -40,40 +67,61 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
     if (progress) progress->check_in(t);
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
   }
-  all_.reserve(count);
   std::vector<int> rough;
-  for (int t = 0; t < count; ++t) {
-    if (progress && t % 64 == 0) progress->check();
-    all_.push_back(constant);
-    CellBudget budget{kFirstCells * body.size(), progress};
-    const std::vector<std::string> known = unmet_;
-    if (project_on(body, mesh.corners(t), largest, budget, all_[t])) continue;
-    rough.push_back(t);
-    unmet_ = known;  // more cells may tell what a few do not
+  for (int begin = 0; begin < count; begin += kNeighbours) {
+    if (progress) progress->check();
+    const int end = std::min(begin + kNeighbours, count);
+    ProjectedLoad of_all = constant;
+    const bool is_constant = is_constant_on(body, box_around(mesh, begin, end), largest, of_all);
+    for (int t = begin; t < end; ++t) {
+      if (is_constant) {
+        take(of_all);
+        continue;
+      }
+      ProjectedLoad own = constant;
+      CellBudget budget{kFirstCells * body.size(), progress};
+      const std::vector<std::string> known = unmet_;
+      if (project_on(body, mesh.corners(t), largest, budget, own)) {
+        take(std::move(own));
+        continue;
+      }
+      // It is to be made anew: more cells may tell what a few do not.
+      take(constant, false);
+      rough.push_back(t);
+      unmet_ = known;
+    }
   }
   // One that has no cells would be off by as much as f.
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {
-    ProjectedLoad& load = all_[rough[i]] = constant;
+    ProjectedLoad& load = all_[number_of_[rough[i]]];
     budget.share(rough.size() - i,
                  [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load); });
   }
 }
 
+void LoadProjection::take(ProjectedLoad load, bool may_be_shared) {
+  if (!may_be_shared || !last_may_be_shared_ || all_.back() != load) all_.push_back(std::move(load));
+  number_of_.push_back(static_cast<int>(all_.size()) - 1);
+  last_may_be_shared_ = may_be_shared;
+}
+
 LoadProjection LoadProjection::plus(double z, const LoadProjection& other) const {
-  LoadProjection sum = other.varies() && !varies() ? other : *this;
-  for (std::size_t t = 0; t < sum.all_.size(); ++t) {
-    const ProjectedLoad &own = (*this)[static_cast<int>(t)], &more = other[static_cast<int>(t)];
-    const double size = std::abs(z);
-    sum.all_[t] = {own.projection + z * more.projection,
-                   own.balanced + z * more.balanced,
-                   own.rest + size * more.rest,
-                   own.unbalanced + size * more.unbalanced,
-                   own.uncertain_force + size * more.uncertain_force,
-                   own.uncertain_work + size * more.uncertain_work,
-                   own.jumps || more.jumps};
-  }
+  const double size = std::abs(z);
+  const auto sum_of = [&](const ProjectedLoad& own, const ProjectedLoad& more) -> ProjectedLoad {
+    return {own.projection + z * more.projection,
+            own.balanced + z * more.balanced,
+            own.rest + size * more.rest,
+            own.unbalanced + size * more.unbalanced,
+            own.uncertain_force + size * more.uncertain_force,
+            own.uncertain_work + size * more.uncertain_work,
+            own.jumps || more.jumps};
+  };
+  LoadProjection sum;
   sum.unmet_ = unmet_.empty() ? other.unmet_ : unmet_;
+  const std::size_t count = std::max(number_of_.size(), other.number_of_.size());
+  for (int t = 0; t < static_cast<int>(count); ++t) sum.take(sum_of((*this)[t], other[t]));
+  if (count == 0) sum.all_.push_back(sum_of(all_[0], other.all_[0]));
   return sum;
 }
 

@@ -23,6 +23,8 @@ struct ProjectedLoad {
   /// (f − Πf, φ) is at most this times max |φ|, for linear and for quadratic φ.
   double uncertain_force = 0, uncertain_work = 0;
   bool jumps = false;  ///< Πf is Π₁f in a component that jumps
+
+  bool operator==(const ProjectedLoad&) const = default;
 };
 
 /// The load of a problem on all triangles of its mesh.
@@ -34,20 +36,26 @@ class LoadProjection {
   /// Of f + z q, with the projection of q on the same mesh. What both may be off by adds up.
   LoadProjection plus(double z, const LoadProjection& other) const;
 
-  const ProjectedLoad& operator[](int t) const { return all_[all_.size() == 1 ? 0 : t]; }
+  const ProjectedLoad& operator[](int t) const { return all_[number_of_.empty() ? 0 : number_of_[t]]; }
   /// It is not known to be 0.
   bool is_any() const { return varies() || !all_[0].projection.isZero(0); }
   /// f is not the same all over some triangle.
-  bool varies() const { return all_.size() > 1; }
+  bool varies() const { return !number_of_.empty(); }
   /// Why what it says of f is not certain; empty if it is.
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
+  LoadProjection() = default;
   /// `largest`: of |f|. Returns false if a component could do with more cells than its share of the budget.
   bool project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
                   CellBudget& budget, ProjectedLoad& load);
 
+  /// Of the next triangle; if it is that of the last one and neither is to change, both share it.
+  void take(ProjectedLoad load, bool may_be_shared = true);
+
   std::vector<ProjectedLoad> all_;
+  std::vector<int> number_of_;  ///< of each triangle that in `all_`; none if they have one for all
+  bool last_may_be_shared_ = false;
   std::vector<std::string> unmet_;
 };
 

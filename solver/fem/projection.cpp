@@ -17,19 +17,8 @@ namespace {
 
 using Nodes = Projection::Nodes;
 
-/// ∫ φ_i φ_j over the reference triangle for the basis of P2.
-const Eigen::Matrix<double, 6, 6>& mass() {
-  static const Eigen::Matrix<double, 6, 6> all = [] {
-    Eigen::Matrix<double, 6, 6> sum = Eigen::Matrix<double, 6, 6>::Zero();
-    for (const auto& [point, weight] : rule_of_degree(5))
-      sum += weight * quadratic_basis(point) * quadratic_basis(point).transpose();
-    return sum;
-  }();
-  return all;
-}
-
 const Eigen::Matrix<double, 6, 6>& inverse_mass() {
-  static const Eigen::Matrix<double, 6, 6> inverse = mass().inverse();
+  static const Eigen::Matrix<double, 6, 6> inverse = quadratic_mass().inverse();
   return inverse;
 }
 
@@ -42,8 +31,8 @@ const Eigen::Matrix<double, 6, 6>& onto_linear() {
       linear(corner, corner) = 1;
       for (const int other : {1, 2}) linear(corner, 3 + (corner + other) % 3) = 0.5;
     }
-    const Eigen::Matrix3d of_linear = linear * mass() * linear.transpose();
-    return mass() * linear.transpose() * of_linear.inverse() * linear;
+    const Eigen::Matrix3d of_linear = linear * quadratic_mass() * linear.transpose();
+    return quadratic_mass() * linear.transpose() * of_linear.inverse() * linear;
   }();
   return map;
 }
@@ -79,8 +68,8 @@ class Samples {
     } else {
       const Nodes beyond_mean = projection - Nodes::Constant(mean_);
       const double whole = square_ + square_of_kept();
-      square =
-          std::max(0., whole - beyond_mean * mass() * beyond_mean.transpose()) + kEnclosureRounding * whole;
+      square = std::max(0., whole - beyond_mean * quadratic_mass() * beyond_mean.transpose()) +
+               kEnclosureRounding * whole;
     }
     return std::sqrt(square) + std::sqrt(value_square);
   }
@@ -304,12 +293,20 @@ Projection project(const Field& field, const std::array<Point, 3>& corners,
   return own;
 }
 
+std::optional<double> constant_on(const Field& field, const Eigen::AlignedBox2d& box, double rounding) {
+  const Vector twice = 2 * box.sizes();
+  const std::array<Point, 3> around{box.min(), box.min() + Vector(twice.x(), 0),
+                                    box.min() + Vector(0, twice.y())};
+  const std::optional<double> value = only_value(field, around);
+  return value && rounding_on(field, around, rounding) == 0 ? value : std::nullopt;
+}
+
 Projection::Nodes linear_part(const Projection::Nodes& quadratic) {
   return quadratic * onto_linear();
 }
 
 double norm(const Projection::Nodes& quadratic) {
-  return std::sqrt(quadratic * mass() * quadratic.transpose());
+  return std::sqrt(quadratic * quadratic_mass() * quadratic.transpose());
 }
 
 }  // namespace signorini

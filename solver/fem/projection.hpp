@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+
+#include <Eigen/Geometry>
+
 #include "fem/triangle_pieces.hpp"
 
 namespace signorini {
@@ -34,6 +38,10 @@ struct ProjectionTolerance {
 /// As far as the budget lasts. What is no formula is taken for what it is in the points of a rule.
 Projection project(const Field& field, const std::array<Point, 3>& corners,
                    const ProjectionTolerance& tolerance, CellBudget& budget);
+
+/// The value that a field has all over a box; nothing if it may vary there, or rounds to more than
+/// `rounding`.
+std::optional<double> constant_on(const Field& field, const Eigen::AlignedBox2d& box, double rounding);
 
 /// Π₁ of a polynomial of P2, and its norm.
 Projection::Nodes linear_part(const Projection::Nodes& quadratic);

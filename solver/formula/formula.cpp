@@ -47,4 +47,26 @@ bool Formula::has_branches() const {
                              [](const Instruction& step) { return step.operation == Operation::choose; });
 }
 
+namespace {
+
+/// Counts the variables that a value follows, other than by comparing them.
+struct Following {
+  double x = 1, y = 1, nx = 1, ny = 1;
+
+  double constant(double) const { return 0; }
+  template <typename... Values>
+  double operator()(Operation operation, const Values&... of) const {
+    const bool compares = operation >= Operation::less && operation <= Operation::either;
+    return compares ? 0 : (of + ...);
+  }
+  double operator()(Operation, double, double one, double other) const { return one + other; }
+};
+
+}  // namespace
+
+bool Formula::has_few_values() const {
+  Following following;
+  return evaluate(following) == 0;
+}
+
 }  // namespace signorini

@@ -73,6 +73,8 @@ class Formula {
   bool has_variables() const;
   /// It chooses between values.
   bool has_branches() const;
+  /// Variables are but compared, so that its values are some of a few.
+  bool has_few_values() const;
 
  private:
   template <typename Arithmetic>

@@ -102,9 +102,12 @@ TEST(LookAhead, SaysWhatItLeavesToTheSolve) {
   EXPECT_EQ(left(membrane(32)), 0u);
   EXPECT_EQ(left(membrane(64)), 1u);
   std::string formula = "1";
-  while (formula.size() < 900) formula += "+sin(7*x)";
+  while (formula.size() < 900) formula += "+1/sin(7*x)";  // no enclosure tells that it is finite
   EXPECT_EQ(left(with(membrane(), "/load/body", formula)), 1u);
   EXPECT_EQ(left(with(membrane(32), "/load/body", formula)), 2u);
+  std::string bounded = "1";
+  while (bounded.size() < 900) bounded += "+sin(7*x)";
+  EXPECT_EQ(left(with(membrane(32), "/load/body", bounded)), 1u);
 }
 
 }  // namespace

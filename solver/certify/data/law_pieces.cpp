@@ -311,7 +311,7 @@ Quality quality_of(const Material& material, const EnclosedFields& fields) {
 }  // namespace
 
 int LawPiece::degree_of_rule(int of_fields, double tolerance) const {
-  for (const int degree : {5, 6, 8, 10, 18})
+  for (const int degree : {2, 4, 5, 6, 8, 10, 18})
     if (degree >= 2 * of_fields &&
         error_of_rule(degree, of_fields) <= std::max(tolerance, 1.5 * errors.back()))
       return degree;

@@ -1,5 +1,6 @@
 #include "certify/triangle_sums.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -70,7 +71,11 @@ MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd
 
 MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms,
                            const LoadProjection& load)
-    : discrete_(discrete), terms_(std::move(terms)), load_(load) {}
+    : discrete_(discrete),
+      terms_(std::move(terms)),
+      load_(load),
+      is_balanced_(std::ranges::none_of(
+          terms_, [](const Term& term) { return QuadraticBalance(term.discrete).is_needed(); })) {}
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
     : MembraneSums(pairs.discretization(), pairs.stress(), pairs.first()) {
@@ -89,6 +94,8 @@ const MembraneSums::Rule& MembraneSums::rule_of_degree(int order) {
 
 const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
   const int order = discrete_.spaces().order;
+  if (degree <= 2) return rule_of_degree<2>(order);
+  if (degree <= 4) return rule_of_degree<4>(order);
   if (degree <= 5) return rule_of_degree<5>(order);
   if (degree <= 6) return rule_of_degree<6>(order);
   if (degree <= 8) return rule_of_degree<8>(order);
@@ -98,6 +105,7 @@ const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
 
 std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
   std::optional<QuadraticBalance::Data> sum;
+  if (is_balanced_) return sum;
   for (const Term& term : terms_) {
     const auto own = QuadraticBalance(term.discrete)(t);
     if (own) sum = sum.value_or(QuadraticBalance::Data::Zero()) + term.factor * *own;
@@ -108,8 +116,9 @@ std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
 TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
   const std::optional<QuadraticBalance::Data> balance = balance_on(t);
   const bool lifted = is_lifted(terms_, t), cubic = balance.has_value();
-  const int of_fields = std::max(cubic ? 3 : 2, lifted ? Lift::kDegreeInside - 1 : 1);
-  const int of_load = lifted ? Lift::kDegreeInside + 2 : 4;
+  const int of_fields =
+      std::max(cubic ? 3 : discrete_.spaces().order + 1, lifted ? Lift::kDegreeInside - 1 : 1);
+  const int of_load = lifted ? Lift::kDegreeInside + 2 : 0;
   TriangleSums sums;
   const std::vector<LawPiece> pieces = laws.cut(t);
   const auto degree_on = [&](const LawPiece& piece) {
@@ -130,17 +139,19 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
   const ProjectedLoad& load = load_[t];
-  const double area = AffineMap(discrete_.mesh.corners(t)).determinant / 2;
+  const AffineMap map(discrete_.mesh.corners(t));
+  const Quadratic<1> v = displacement_on<1>(terms_, t);
+  const double area = map.determinant / 2, largest_value = bound_of_quadratic(v);
+  sums.energy -= map.determinant * (v * quadratic_mass() * load.projection.transpose()).value();
+  sums.energy_slack += load.uncertain_work * largest_value;
   const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
-  sums.energy_slack += load.uncertain_work * bound_of_quadratic(displacement_on<1>(terms_, t));
   if (rest.slope > 0) {
     const double zeta = rest.slope * std::sqrt(area * laws.whole(t).stiffest);
     sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                          rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
     sums.add_unknown_strain(zeta);
   }
-  sums.add_rounding(AffineMap(discrete_.mesh.corners(t)), laws.whole(t),
-                    bound_of_quadratic(displacement_on<1>(terms_, t)));
+  sums.add_rounding(map, laws.whole(t), largest_value);
   return sums;
 }
 
@@ -160,7 +171,7 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     w = v - second_->v.on<1>(t);
     stream_function_of_tau = stream_function - second_->stream_function_on(discrete_.mesh, t);
   }
-  const Quadratic<1> acting = load_[t].projection;
+  const Quadratic<1> load = load_[t].projection;
   const bool curled = !stream_function.isZero(0), lifted = is_lifted(terms_, t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
@@ -168,12 +179,12 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     const auto& [compliance, stiffness] = law(map(reference));
     const double weight = share * map.determinant;
     const Tensor<1> sigma = rule.stress(q, map, stress);
-    Eigen::Matrix<double, 1, 1> value = v * rule.basis[q];
     Tensor<1> slope = gradient<1>(inverse, v * rule.gradients[q].transpose());
     if (lifted) {
-      const double quadratic = value[0];
-      add_lifts<1>(terms_, t, reference, inverse, value, slope);
-      lifted_square += weight * (value[0] - quadratic) * (value[0] - quadratic);
+      Eigen::Matrix<double, 1, 1> lift = Eigen::Matrix<double, 1, 1>::Zero();
+      add_lifts<1>(terms_, t, reference, inverse, lift, slope);
+      sums.energy -= weight * (load * rule.basis[q]).value() * lift[0];
+      lifted_square += weight * lift[0] * lift[0];
     }
     Tensor<1> correction = Tensor<1>::Zero();
     if (curled) correction = curl(inverse, stream_function * rule.gradients[q].transpose());
@@ -188,8 +199,7 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     sums.correction += of_correction;
     sums.stress += of_sigma;
     sums.strain += of_strain / 2;
-    const double load = acting * rule.basis[q];
-    sums.energy += of_strain / 2 - weight * load * value[0];
+    sums.energy += of_strain / 2;
     double all_fields = 2 * of_sigma + 3 * of_correction + of_strain;
     if (second_) {
       const Tensor<1> strain = gradient<1>(inverse, w * rule.gradients[q].transpose()),

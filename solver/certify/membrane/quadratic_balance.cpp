@@ -57,9 +57,11 @@ Eigen::Matrix<double, kBalanceData, kBalanceData> functions_of_data() {
 }  // namespace
 
 bool QuadraticBalance::is_needed() const {
-  if (discrete_.body.varies()) return true;
   for (int edge = 0; edge < static_cast<int>(discrete_.mesh.edges.size()); ++edge)
     if (discrete_.traction.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
+  if (!discrete_.body.varies()) return false;
+  for (int t = 0; t < discrete_.triangles(); ++t)
+    if ((*this)(t)) return true;
   return false;
 }
 

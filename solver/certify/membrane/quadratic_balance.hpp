@@ -21,7 +21,7 @@ class QuadraticBalance {
   using Data = Eigen::Matrix<double, kData, 1>;
   using Values = Eigen::Matrix<double, 2, kData>;
 
-  /// Somewhere there may be some.
+  /// Somewhere there is some.
   bool is_needed() const;
 
   /// None where the data are constant or balanced by σ_h.
