@@ -137,8 +137,10 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     mesh = used->shared_mesh();
     discretization = condensed.take_discretization();
   }
+  const std::shared_ptr<const ElementTree> tree = used->factor().tree();
   if (sweep.empty()) used.reset();  // unless the cache has it, too
-  if (!settings.entries_alone) add_certified(problem, settings, progress, solution, discretization.get());
+  if (!settings.entries_alone)
+    add_certified(problem, settings, progress, solution, discretization.get(), tree);
   discretization.reset();
   if (!sweep.empty())
     SweepOver(Sweep(problem, std::move(used), settings), sweep, settings, observer, progress).solve(solution);

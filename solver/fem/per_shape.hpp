@@ -13,33 +13,26 @@
 
 namespace signorini {
 
-/// What follows from the shape of a triangle alone, made once for all triangles of the same shape that come
-/// one after the other: where the material is constant, a structured mesh has but a few shapes. The last few
-/// are remembered, so that other meshes lose nothing.
+/// Values that follow from the shape of a triangle alone. The last few are remembered, for triangles of the
+/// same shape that come soon after: a structured mesh has but a few shapes.
 ///
 /// Shapes that differ by rounding alone count as the same: the coordinates of i/48 of a length leave hardly
 /// two triangles alike to the last bit.
 template <typename Value>
-class PerShape {
+class ShapeMemory {
  public:
-  explicit PerShape(const Discretization& discrete)
-      : discrete_(discrete), digits_per_length_(digits_per_length(discrete.mesh)) {}
+  explicit ShapeMemory(const AffineMap& first) : digits_per_length_(digits_per_length(first)) {}
 
-  /// The value for a triangle, made if need be, from its matrices if `make` takes some; valid until the next
-  /// call.
+  /// The value for a triangle, made if need be; valid until the next call.
   template <typename Make>
-  Value& operator()(int triangle, const Make& make) {
-    const Eigen::Matrix2d jacobian = AffineMap(discrete_.mesh.corners(triangle)).jacobian;
+  Value& operator()(const Eigen::Matrix2d& jacobian, const Make& make) {
     auto& alike = remembered_[place(jacobian)];
     auto known = std::ranges::find_if(alike, [&](const std::unique_ptr<Remembered>& one) {
-      return one && discrete_.element.has_constant_material() && is_same(one->jacobian, jacobian);
+      return one && is_same(one->jacobian, jacobian);
     });
     if (known == alike.end()) {
       --known;
-      if constexpr (std::invocable<Make>)
-        known->reset(new Remembered{jacobian, make()});
-      else
-        known->reset(new Remembered{jacobian, make(discrete_.element.matrices(discrete_.mesh, triangle))});
+      known->reset(new Remembered{jacobian, make()});
     }
     std::rotate(alike.begin(), known, known + 1);
     return alike.front()->value;
@@ -66,9 +59,8 @@ class PerShape {
 
   /// What makes whole numbers of some digits of the first triangle's coordinates. By the golden ratio simple
   /// fractions do not lie halfway between two numbers, where rounding would decide.
-  static double digits_per_length(const Mesh& mesh) {
+  static double digits_per_length(const AffineMap& first) {
     constexpr int digits = 24;
-    const AffineMap first(mesh.corners(0));
     return std::scalbn(std::numbers::phi, digits - std::ilogb(first.jacobian.cwiseAbs().maxCoeff()));
   }
 
@@ -83,9 +75,38 @@ class PerShape {
     return mixed >> (64 - kBits);
   }
 
-  const Discretization& discrete_;
   const double digits_per_length_;
   std::array<std::array<std::unique_ptr<Remembered>, kAlike>, 1 << kBits> remembered_;
+};
+
+/// What follows from the shape of a triangle and its law: made once for all triangles of the same shape that
+/// come one after the other where the material is constant, and for each where it is not.
+template <typename Value>
+class PerShape {
+ public:
+  explicit PerShape(const Discretization& discrete)
+      : discrete_(discrete), remembered_(AffineMap(discrete.mesh.corners(0))) {}
+
+  /// The value for a triangle, made if need be, from its matrices if `make` takes some; valid until the next
+  /// call.
+  template <typename Make>
+  Value& operator()(int triangle, const Make& make) {
+    const auto made = [&]() -> Value {
+      if constexpr (std::invocable<Make>)
+        return make();
+      else
+        return make(discrete_.element.matrices(discrete_.mesh, triangle));
+    };
+    if (discrete_.element.has_constant_material())
+      return remembered_(AffineMap(discrete_.mesh.corners(triangle)).jacobian, made);
+    last_ = std::make_unique<Value>(made());
+    return *last_;
+  }
+
+ private:
+  const Discretization& discrete_;
+  ShapeMemory<Value> remembered_;
+  std::unique_ptr<Value> last_;
 };
 
 }  // namespace signorini

@@ -10,10 +10,11 @@ constexpr std::size_t kSupports = 16;
 /// What the energies of extensions may be too large by, where the stiffness varies.
 constexpr double kOfEnergy = 1e-3;
 
-void add_supports(const Discretization& discrete, const Settings& settings, Progress& progress,
-                  const Solution& solution, Certified& certified) {
+void add_supports(const Discretization& discrete, std::shared_ptr<const ElementTree> tree,
+                  const Settings& settings, Progress& progress, const Solution& solution,
+                  Certified& certified) {
   const LawOnMesh laws(discrete.problem.material, discrete.mesh, kOfEnergy, progress);
-  const Extensions extensions(discrete, laws, settings.factorization, progress);
+  const Extensions extensions(discrete, laws, settings.factorization, progress, std::move(tree));
   if (extensions.supports().size() > kSupports) {
     certified.unmet.push_back("what supports take is bounded for up to " + std::to_string(kSupports) +
                               " of them: ask for quantities");
@@ -25,7 +26,7 @@ void add_supports(const Discretization& discrete, const Settings& settings, Prog
 }  // namespace
 
 void add_certified(const Problem& problem, const Settings& settings, Progress& progress, Solution& solution,
-                   const Discretization* at_hand) {
+                   const Discretization* at_hand, std::shared_ptr<const ElementTree> tree) {
   Summary& summary = solution.summary;
   const std::optional<ErrorBound>& bound = summary.error_bound;
   if (!bound || !bound->guaranteed || summary.outcome == Outcome::cancelled) return;
@@ -36,9 +37,9 @@ void add_certified(const Problem& problem, const Settings& settings, Progress& p
   try {
     progress.enter(Phase::certify);
     if (at_hand != nullptr)
-      add_supports(*at_hand, settings, progress, solution, certified);
+      add_supports(*at_hand, std::move(tree), settings, progress, solution, certified);
     else
-      add_supports(Discretization(problem, solution.mesh, &progress), settings, progress, solution,
+      add_supports(Discretization(problem, solution.mesh, &progress), nullptr, settings, progress, solution,
                    certified);
   } catch (const TimeUp&) {
     certified.unmet.push_back(

@@ -66,6 +66,10 @@ double seconds_of_quantities(const Problem& problem, double triangles) {
   return sum;
 }
 
+/// Whether the mesh that is cut is the one that is solved on, or another that but shows the shape of its
+/// pieces, as a coarser one does: then its pieces are not alike where those are.
+enum class Shows { itself, another };
+
 /// The estimates of a problem by all its meshes and schemes, which have its domain and its conditions in
 /// common.
 class Estimation {
@@ -106,10 +110,10 @@ class Estimation {
   Estimate estimate_of(const Counts& counts) const;
   template <typename EdgesOfPart>
   void cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
-           const EdgesOfPart& edges_of);
-  void cut(const Mesh& mesh);
+           const EdgesOfPart& edges_of, Shows shows);
+  void cut(const Mesh& mesh, Shows shows = Shows::itself);
   void cut(const MeshData& data);
-  void cut_finer(Mesh mesh, std::int64_t triangles);
+  void cut_finer(Mesh mesh, std::int64_t triangles, Shows shows);
   void cut_coarser(const MeshRequest& coarse, std::int64_t triangles);
   std::optional<Coarser> coarser_mesh(std::int64_t triangles) const;
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
@@ -129,33 +133,41 @@ class Estimation {
 /// The pieces of a mesh; `edges_of(part)` has pairs of points.
 template <typename EdgesOfPart>
 void Estimation::cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
-                     const EdgesOfPart& edges_of) {
+                     const EdgesOfPart& edges_of, Shows shows) {
   std::vector<MeshPieces::Edges> edges;
   for (std::size_t part = 0; part < conditions_.size(); ++part) edges.push_back(edges_of(part));
   std::vector<std::pair<const Condition*, const MeshPieces::Edges*>> boundary;
   for (std::size_t part = 0; part < conditions_.size(); ++part)
     boundary.emplace_back(conditions_[part], &edges[part]);
-  pieces_.emplace(points, triangles, boundary, components(problem_.material));
+  pieces_.emplace(points, triangles, boundary, components(problem_.material),
+                  shows == Shows::itself && by_ == Factorization::multifrontal &&
+                      is_constant(problem_.material) && !problem_.mesh.adaptive);
 }
 
-void Estimation::cut(const Mesh& mesh) {
-  cut(mesh.points, mesh.triangles, [&](std::size_t part) {
-    MeshPieces::Edges edges;
-    for (const int edge : mesh.boundary[part].edges) edges.push_back(mesh.edges[edge]);
-    return edges;
-  });
+void Estimation::cut(const Mesh& mesh, Shows shows) {
+  cut(
+      mesh.points, mesh.triangles,
+      [&](std::size_t part) {
+        MeshPieces::Edges edges;
+        for (const int edge : mesh.boundary[part].edges) edges.push_back(mesh.edges[edge]);
+        return edges;
+      },
+      shows);
 }
 
 /// Uniform refinements are made as long as they have no more triangles than these, and few.
-void Estimation::cut_finer(Mesh mesh, std::int64_t triangles) {
+void Estimation::cut_finer(Mesh mesh, std::int64_t triangles, Shows shows) {
   const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
   while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) mesh = refine(mesh, 1);
   may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
-  cut(mesh);
+  const bool is_all = static_cast<std::int64_t>(mesh.triangles.size()) == triangles;
+  cut(mesh, is_all ? shows : Shows::another);
 }
 
 void Estimation::cut(const MeshData& data) {
-  cut(data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; });
+  cut(
+      data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; },
+      problem_.mesh.refine == 0 ? Shows::itself : Shows::another);
 }
 
 /// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
@@ -178,7 +190,7 @@ void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t triangles) 
   std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most_of_own_shape);
   if (!mesh) return;
   may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
-  cut_finer(std::move(*mesh), triangles);
+  cut_finer(std::move(*mesh), triangles, Shows::another);
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
@@ -229,7 +241,9 @@ Counts Estimation::count() {
   const std::optional<Coarser> coarse = is_large ? coarser_mesh(sizes.triangles) : std::nullopt;
   // Few, or twice as many where no coarser one of few shows the shape.
   const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
-  if (!is_rectangle() && may_be_made_ > 0 && sizes.triangles <= most)
+  // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
+  const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
+  if (!has_formula && may_be_made_ > 0 && sizes.triangles <= most)
     mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
   if (mesh) {
     may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
@@ -237,7 +251,7 @@ Counts Estimation::count() {
   }
   const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
   if (mesh) {
-    cut_finer(*mesh, triangles);
+    cut_finer(*mesh, triangles, Shows::itself);
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
   } else if (coarse && std::min(may_be_made_, may_be_cut_) > 0) {

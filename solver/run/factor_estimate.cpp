@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Geometry>
 
+#include "fem/per_shape.hpp"
 #include "mesh/edge_table.hpp"
 #include "progress/observer.hpp"
 #include "progress/progress.hpp"
 #include "system/dissection.hpp"
+#include "system/repeated_pieces.hpp"
 #include "system/short_cut.hpp"
 
 namespace signorini {
@@ -41,9 +44,15 @@ struct Direction {
 /// squares.
 constexpr double kThrough = 1.5, kRagged = 1.3;
 
+/// Of all pieces of a level so many differ from each other where squares have one material: by the sides that
+/// they have on the boundary, and the order in which the others are cut. As measured of thousands of squares.
+double different_pieces(int level) {
+  return std::min(std::exp2(level), 12. + 4 * level);
+}
+
 /// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
-FactorBytes of_squares(Direction x, Direction y, bool is_regular, const Spaces& spaces, double all_triangles,
-                       double contact) {
+FactorBytes of_squares(Direction x, Direction y, bool is_regular, bool is_uniform, const Spaces& spaces,
+                       double all_triangles, double contact) {
   constexpr double least_in_leaf = 8;
   const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
   const int levels = static_cast<int>(std::log2(std::max(1., all_triangles / least_in_leaf)));
@@ -65,7 +74,8 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, const Spaces& 
           std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
     }
     const double rest = sides * (per_edge + per_point) + contact / pieces;
-    all.panels += kValue * pieces * pivots * (pivots + rest);
+    const double kept = is_uniform ? different_pieces(level) : pieces;
+    all.panels += kValue * kept * pivots * (pivots + rest);
     all.fronts += kUnknown * pieces * (pivots + rest);
     // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
     const double most =
@@ -90,6 +100,28 @@ bool exist(const std::array<int, 3>& numbers, const std::vector<Point>& points) 
   return std::ranges::all_of(numbers, [&](int i) { return i >= 0 && i < static_cast<int>(points.size()); });
 }
 
+/// The number of the corner of a triangle that is not on its side.
+int opposite(const std::array<int, 3>& triangle, const std::array<int, 2>& side) {
+  const auto corner =
+      std::ranges::find_if(triangle, [&](int point) { return std::ranges::count(side, point) == 0; });
+  return static_cast<int>(corner - triangle.begin());
+}
+
+/// Triangles of the same shape have the number of one of them.
+void number_shapes(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+                   std::vector<int>& number_of) {
+  if (triangles.empty()) return;
+  const auto map_of = [&](const std::array<int, 3>& own) {
+    return AffineMap({points[own[0]], points[own[1]], points[own[2]]});
+  };
+  // Of triangles without a width nothing is alike: they are for the solve to refuse.
+  const AffineMap first = map_of(triangles[0]);
+  if (first.determinant == 0) return;
+  ShapeMemory<int> shapes(first);
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+    number_of[t] = shapes(map_of(triangles[t]).jacobian, [t] { return t; });
+}
+
 std::array<int, 2> ascending(const std::array<int, 2>& edge) {
   return {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
 }
@@ -97,12 +129,13 @@ std::array<int, 2> ascending(const std::array<int, 2>& edge) {
 }  // namespace
 
 FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns) {
-  return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular, spaces,
-                    triangles, contact_unknowns);
+  return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular,
+                    grid.is_uniform, spaces, triangles, contact_unknowns);
 }
 
 MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
-                       const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components)
+                       const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components,
+                       bool repeated)
     : triangles_(static_cast<double>(triangles.size())) {
   if (!std::ranges::all_of(triangles, [&](const auto& triangle) { return exist(triangle, points); })) return;
   std::vector<std::pair<std::array<int, 2>, const Condition*>> conditions;
@@ -120,6 +153,10 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
     const auto first = sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind;
     return std::find(first, first + 2, nowhere);
   };
+  // As assemble() numbers them: by their shapes, and by the sides on which their traces are turned.
+  std::iota(sum.matrix_of.begin(), sum.matrix_of.end(), 0);
+  if (repeated) number_shapes(points, triangles, sum.matrix_of);
+  for (int& number : sum.matrix_of) number *= 8;
   std::vector<int> traces, contact;
   EdgeTable(triangles).for_each_edge([&](const auto& sides) {
     const auto known =
@@ -131,6 +168,8 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
       for (const TriangleEdge& side : sides)
         *place(side.triangle, edges_at) = static_cast<int>(traces.size());
       traces.push_back(unknown);
+      if (unknown < components)
+        sum.matrix_of[sides[0].triangle] += 1 << opposite(triangles[sides[0].triangle], sides[0].points);
     }
     if (condition != nullptr && std::holds_alternative<Contact>(*condition))
       contact.push_back(sides[0].triangle);
@@ -151,6 +190,8 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
   Observer nobody;
   Progress progress(nobody, {});
   const Dissection dissection(sum, static_cast<int>(contact.size()), progress);
+  const RepeatedPieces like(dissection, sum, progress);
+  std::vector<int> numbers(dissection.pieces(), 0);
   const auto share_of = [&](std::span<const int> unknowns) {
     Share share;
     for (const int unknown : unknowns) {
@@ -163,10 +204,14 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
   };
   dissection.for_each_piece([&](int piece) {
     const Dissection::Front front = dissection.front(piece);
+    const bool is_leaf = dissection.is_leaf(piece);
+    numbers[piece] = static_cast<int>(pieces_.size());
+    const std::array<int, 2> halves =
+        is_leaf ? std::array{0, 0} : std::array{numbers[2 * piece], numbers[2 * piece + 1]};
     pieces_.push_back({share_of(front.unknowns.first(front.pivots)), share_of(front.remaining()),
-                       static_cast<int>(std::bit_width(static_cast<unsigned>(piece)) % 2),
-                       dissection.is_leaf(piece), Vector(1, 1), 1});
-    if (!dissection.is_leaf(piece)) return;
+                       static_cast<int>(std::bit_width(static_cast<unsigned>(piece)) % 2), is_leaf,
+                       numbers[like.original(piece)], like.uses(piece), halves, Vector(1, 1), 1});
+    if (!is_leaf) return;
     Eigen::AlignedBox2d all;
     Vector sum_of_own = Vector::Zero();
     for (const int t : dissection.elements(piece)) {
@@ -186,43 +231,54 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
 FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double triangles,
                                double contact) const {
   const double x = std::sqrt(triangles / 2 * leaf.across), y = triangles / 2 / x;
-  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, spaces, triangles,
-                    contact);
+  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, false, spaces,
+                    triangles, contact);
 }
 
-FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns) const {
+FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
+                                     bool repeated) const {
   const double growth = std::sqrt(triangles / triangles_),
                leaves = static_cast<double>(pieces_.size() + 1) / 2;
   const double per_contact = contact_edges_ > 0 ? contact_unknowns / contact_edges_ : 0;
   const auto free = [&](const Share& share) {
     return growth * ((spaces.order + 1) * share.traces + share.points);
   };
+  const auto rim_of = [&](const Piece& piece) { return free(piece.rim) + per_contact * piece.rim.contact; };
   FactorBytes all;
   double stacks_of_leaf = 0;
   std::array<double, 2> stacks{}, largest{};
-  std::vector<double> left;  // by pieces that the piece around them has not taken in yet
-  for (const Piece& piece : pieces_) {
-    const double rim = free(piece.rim) + per_contact * piece.rim.contact;
-    if (piece.is_leaf && growth > 1) {
-      const FactorBytes inside = within(piece, spaces, triangles / leaves, per_contact * piece.rim.contact);
-      all.panels += inside.panels;
-      all.fronts += inside.fronts;
-      stacks_of_leaf = std::max(stacks_of_leaf, inside.stacks);
-    } else {
-      const double pivots = free(piece.cut);
-      all.panels += kValue * pivots * (pivots + rim);
-      all.fronts += kUnknown * (pivots + rim);
-    }
-    // As the two stacks of multifrontal(): one for a piece, the other for its halves.
-    stacks[piece.parity] += rim * rim;
+  double shared = 0, most_shared = 0;
+  const auto original_of = [&](int i) { return repeated ? pieces_[i].original : i; };
+  std::vector<int> uses, uses_left;
+  for (const Piece& piece : pieces_) uses.push_back(repeated ? piece.uses : 1);
+  uses_left = uses;
+  for (int i = 0; i < static_cast<int>(pieces_.size()); ++i) {
+    const Piece& piece = pieces_[i];
+    const double rim = rim_of(piece), pivots = free(piece.cut);
+    const bool is_original = original_of(i) == i, has_inside = piece.is_leaf && growth > 1;
+    const FactorBytes inside =
+        has_inside ? within(piece, spaces, triangles / leaves, per_contact * piece.rim.contact)
+                   : FactorBytes{kValue * pivots * (pivots + rim), kUnknown * (pivots + rim), 0};
+    all.fronts += inside.fronts;
+    if (!is_original) continue;
+    all.panels += inside.panels;
+    stacks_of_leaf = std::max(stacks_of_leaf, inside.stacks);
+    // As multifrontal() keeps them: one stack for a piece, the other for its halves, and what several take
+    // in.
+    (uses[i] > 1 ? shared : stacks[piece.parity]) += rim * rim;
+    most_shared = std::max(most_shared, shared);
     largest[piece.parity] = std::max(largest[piece.parity], stacks[piece.parity]);
-    for (int half = 0; half < 2 && !piece.is_leaf; ++half) {
-      stacks[1 - piece.parity] -= left.back();
-      left.pop_back();
+    if (piece.is_leaf) continue;
+    for (const int half : piece.halves) {
+      const int original = original_of(half);
+      const double left = std::pow(rim_of(pieces_[original]), 2);
+      if (uses[original] <= 1)
+        stacks[1 - piece.parity] -= left;
+      else if (--uses_left[original] == 0)
+        shared -= left;
     }
-    left.push_back(rim * rim);
   }
-  all.stacks = kValue * (largest[0] + largest[1]) + stacks_of_leaf;
+  all.stacks = kValue * (largest[0] + largest[1] + most_shared) + stacks_of_leaf;
   return all;
 }
 

@@ -22,6 +22,7 @@ struct Grid {
   double x, y;
   double width, height;  ///< of a square
   bool is_regular;       ///< that cuts may go between squares
+  bool is_uniform;  ///< of one material: pieces that are alike are kept once (system/repeated_pieces.hpp)
 };
 
 /// From a formula for a dissection of squares.
@@ -33,16 +34,20 @@ class MeshPieces {
  public:
   using Edges = std::vector<std::array<int, 2>>;  ///< as pairs of points
 
-  /// The edges of each condition that there is on the boundary. A mesh that nobody has checked may have
-  /// numbers of points that do not exist: then there are no pieces.
+  /// The edges of each condition that there is on the boundary. Of `repeated` pieces that are alike one is
+  /// kept (system/repeated_pieces.hpp). A mesh that nobody has checked may have numbers of points that do not
+  /// exist: then there are no pieces.
   MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
-             const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components);
+             const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components,
+             bool repeated);
 
   bool empty() const { return pieces_.empty(); }
   double triangles() const { return triangles_; }  ///< of the mesh that was cut
 
   /// Of the mesh with so many triangles, by uniform refinements or about such, and so many contact unknowns.
-  FactorBytes factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns) const;
+  /// `repeated`: triangles of a shape share their matrix, so that pieces may be alike.
+  FactorBytes factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
+                           bool repeated) const;
 
  private:
   /// What lies on a cut, or on the rim of a piece.
@@ -55,8 +60,10 @@ class MeshPieces {
     Share cut, rim;
     int parity;  ///< of its depth
     bool is_leaf;
-    Vector extent;  ///< of a leaf,
-    double across;  ///< and by how many times more triangles lie along x than along y
+    int original, uses;         ///< the number of the first that is like it, and what takes that in
+    std::array<int, 2> halves;  ///< their numbers, unless it is a leaf
+    Vector extent;              ///< of a leaf,
+    double across;              ///< and by how many times more triangles lie along x than along y
   };
   FactorBytes within(const Piece& leaf, const Spaces& spaces, double triangles, double contact) const;
 

@@ -24,18 +24,38 @@ bool is_uniform(const VectorField& field) {
   return std::ranges::all_of(field.fields(), &Field::is_constant);
 }
 
+/// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
+/// from few are often alike.
+double of_own_shape(const Problem& problem) {
+  if (!is_constant(problem.material) || !std::holds_alternative<Rectangle>(problem.domain)) return 1;
+  constexpr double of_bisected = 0.5;
+  return problem.mesh.adaptive ? of_bisected : 0;
+}
+
+/// Whether hardly any triangle has a load of its own: neighbours share one.
+bool has_few_values(const VectorField& field) {
+  return std::ranges::all_of(field.fields(), [](const Field& own) {
+    return own.is_constant() || (own.formula() && own.formula()->has_few_values());
+  });
+}
+
 /// Where a mesh refines itself is not known. It does so in a few places, which are cheaper to cut than a grid
 /// that is as fine everywhere.
-Grid grid_of(const Problem& problem, double triangles) {
+Grid grid_of(const Problem& problem, double triangles, bool repeated) {
   if (!std::holds_alternative<Rectangle>(problem.domain)) {
     const double n = std::sqrt(triangles / 2);
-    return {n, n, 1, 1, false};
+    return {n, n, 1, 1, false, false};
   }
   const auto& rectangle = std::get<Rectangle>(problem.domain);
   const auto [x, y] = divisions(rectangle, problem.mesh);
   const double finer =
       problem.mesh.adaptive ? std::sqrt(triangles / 2 / x / y) : std::exp2(problem.mesh.refine);
-  return {finer * x, finer * y, rectangle.size.x() / (finer * x), rectangle.size.y() / (finer * y), true};
+  return {finer * x,
+          finer * y,
+          rectangle.size.x() / (finer * x),
+          rectangle.size.y() / (finer * y),
+          true,
+          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0};
 }
 
 /// Cuts through arms that lie side by side may run along one of them: by so many times are their fronts
@@ -45,15 +65,15 @@ constexpr double kPanelsOfArms = 1.5, kStacksOfArms = 2.5;
 /// And a coarser mesh that shows the shape of the pieces has fewer of its triangles near local sizes.
 constexpr double kNearLocalSizes = 1.25;
 
-FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, bool repeated) {
   if (sizes.pieces == nullptr || sizes.pieces->empty()) {
     FactorBytes made =
-        factor_bytes(grid_of(problem, sizes.triangles), spaces, sizes.triangles, sizes.contact);
+        factor_bytes(grid_of(problem, sizes.triangles, repeated), spaces, sizes.triangles, sizes.contact);
     made.panels *= 1 + sizes.across * (kPanelsOfArms - 1);
     made.stacks *= 1 + sizes.across * (kStacksOfArms - 1);
     return made;
   }
-  FactorBytes made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact);
+  FactorBytes made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact, repeated);
   if (!problem.mesh.sizes.empty() && sizes.pieces->triangles() < sizes.triangles) {
     made.panels *= kNearLocalSizes;
     made.stacks *= kNearLocalSizes;
@@ -65,9 +85,10 @@ FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveS
 /// than those of the dissection's pieces, at most, as measured.
 constexpr double kJoined = 1.5;
 
-FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
-                      Factorization by) {
-  FactorBytes made = dissected(problem, spaces, sizes);
+/// `own_matrices`: of each triangle, so that no pieces are alike.
+FactorBytes factor_of(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, Factorization by,
+                      bool own_matrices = false) {
+  FactorBytes made = dissected(problem, spaces, sizes, by == Factorization::multifrontal && !own_matrices);
   if (by == Factorization::cholmod) made.panels *= kJoined;
   return made;
 }
@@ -83,6 +104,13 @@ double dofs_per_triangle(const Spaces& spaces) {
   return 3. * spaces.traces_per_edge() + spaces.rotations();
 }
 
+/// A jump meets few triangles, but a few may be jumped through everywhere.
+double load_of_triangle(const VectorField& body) {
+  constexpr double of_jumps = 0.125;
+  if (is_uniform(body)) return 0;
+  return kIndex + (has_few_values(body) ? of_jumps : 1) * sizeof(ProjectedLoad);
+}
+
 /// A discretization of a triangle: its load, its degrees of freedom and those of half its edges' and points'
 /// sides.
 double discretization(const VectorField& body, const Spaces& spaces) {
@@ -90,21 +118,13 @@ double discretization(const VectorField& body, const Spaces& spaces) {
   const double own = dofs_per_triangle(spaces);
   const double couple = spaces.leaves_couples() ? 1 : 0;
   return kNumber * (spaces.displacements() + couple + dofs) + sizeof(CouplingDof) * dofs +
-         kIndex * (own + 1.5) + (is_uniform(body) ? 0 : sizeof(ProjectedLoad));
-}
-
-/// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
-/// from few are often alike.
-double of_own_shape(const Problem& problem) {
-  if (!is_constant(problem.material) || !std::holds_alternative<Rectangle>(problem.domain)) return 1;
-  constexpr double of_bisected = 0.5;
-  return problem.mesh.adaptive ? of_bisected : 0;
+         kIndex * (own + 1.5) + load_of_triangle(body);
 }
 
 /// The sum that is factored: numbers and place of a triangle, and the matrix of its shape.
 double element_sum(const Spaces& spaces, double of_own_shape) {
   const double own = dofs_per_triangle(spaces);
-  return kGrowth * (kIndex * (own + 1) + sizeof(Point) + of_own_shape * kNumber * own * own);
+  return kIndex * (own + 1) + sizeof(Point) + kGrowth * of_own_shape * kNumber * own * own;
 }
 
 /// What the factorisation takes beside the factor and the sum: its stacks, or the sparse matrix of CHOLMOD.
@@ -170,7 +190,7 @@ double tables_of_jumps(const Spaces& spaces) {
 /// pieces. As measured.
 double tables(const Problem& problem, const Spaces& spaces) {
   const bool is_membrane = spaces.components == 1;
-  const double of_shapes = 7.5e5, of_patches = 3e6, of_points = 30e6;
+  const double of_shapes = 8e5, of_patches = 3e6, of_points = 30e6;
   return of_shapes + (is_uniform(problem.body) ? 0 : tables_of_jumps(spaces)) +
          (is_membrane && spaces.order == 1 ? of_patches : 0) +
          (is_membrane || is_constant(problem.material) ? 0 : of_points);
@@ -258,7 +278,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                             Factorization by) {
   const SolveSizes free{sizes.triangles, sizes.system, 0, sizes.pieces, sizes.across};
-  const FactorBytes made = factor_of(problem, spaces, free, by);
+  const FactorBytes made = factor_of(problem, spaces, free, by, true);
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);

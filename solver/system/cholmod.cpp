@@ -127,19 +127,6 @@ Sparse put_together(const ElementSum& sum, const std::vector<double>& added, Com
   return owned<Sparse>(cholmod_l_triplet_to_sparse(triplets.get(), 0, common.get()), common);
 }
 
-std::vector<double> diagonal_of(const ElementSum& sum) {
-  std::vector<double> diagonal(sum.size);
-  const int n = sum.per_element;
-  for (int element = 0; element < sum.elements(); ++element) {
-    const auto unknowns = sum.unknowns_of(element);
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        if (unknowns[j] >= 0 && unknowns[i] == unknowns[j])
-          diagonal[unknowns[j]] += sum.matrix(element)[j * n + i];
-  }
-  return diagonal;
-}
-
 using Permutation = std::vector<SuiteSparse_long>;
 
 /// The pivots of the pieces, and the trailing unknowns behind them.
@@ -259,7 +246,7 @@ Supernodes factored(const ElementSum& sum, const std::vector<double>& added, Cho
 Factor cholmod(const ElementSum& matrix, int trailing, Progress& progress, CholmodOrder order) {
   progress.check();
   const int leading = matrix.size - trailing;
-  const std::vector<double> diagonal = diagonal_of(matrix);
+  const std::vector<double> diagonal = matrix.diagonal();
   if (!std::ranges::all_of(diagonal, [](double entry) { return entry > 0; })) throw NotPositiveDefinite();
   const std::vector<double> added(diagonal.begin() + leading, diagonal.end());
   Common common;

@@ -5,13 +5,8 @@
 #include <iterator>
 #include <limits>
 
-#include "system/short_cut.hpp"
-
 namespace signorini {
 namespace {
-
-/// Elements of a leaf, at least: fewer make the factor sparser, more make its blocks denser.
-constexpr int kLeaf = 8;
 
 /// The smallest piece around two leaves.
 int piece_around(int a, int b) {
@@ -21,9 +16,8 @@ int piece_around(int a, int b) {
 }  // namespace
 
 Dissection::Dissection(const ElementSum& sum, int trailing, Progress& progress)
-    : leaves_(static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, sum.elements() / kLeaf))))),
-      places_(2 * leaves_) {
-  cut(sum, progress);
+    : tree_(sum.tree ? sum.tree : std::make_shared<const ElementTree>(sum, progress)),
+      places_(tree_->pieces()) {
   place_unknowns(sum, trailing);
   for_each_piece([&](int piece) {
     progress.check_in(piece);
@@ -34,29 +28,9 @@ Dissection::Dissection(const ElementSum& sum, int trailing, Progress& progress)
   });
 }
 
-/// Sorts the elements so that those of every piece are neighbours.
-void Dissection::cut(const ElementSum& sum, Progress& progress) {
-  std::vector<Centre> centres(sum.elements());
-  for (int e = 0; e < sum.elements(); ++e) centres[e] = {sum.centres[e], e};
-  ShortCut halves(sum, leaves_);
-  const auto halve = [&](const auto& self, std::span<Centre> elements, int leaves) -> void {
-    if (leaves == 1) {
-      first_element_.push_back(elements_.size());
-      for (const Centre& centre : elements) elements_.push_back(centre.element);
-      return;
-    }
-    progress.check();
-    const std::size_t first_half = halves(elements, leaves);
-    self(self, elements.first(first_half), leaves / 2);
-    self(self, elements.subspan(first_half), leaves / 2);
-  };
-  halve(halve, centres, leaves_);
-  first_element_.push_back(elements_.size());
-}
-
 void Dissection::place_unknowns(const ElementSum& sum, int trailing) {
   std::vector<int> first_leaf(sum.size, std::numeric_limits<int>::max()), last_leaf(sum.size, -1);
-  for (int leaf = leaves_; leaf < 2 * leaves_; ++leaf)
+  for (int leaf = tree_->leaves(); leaf < tree_->pieces(); ++leaf)
     for (const int element : elements(leaf))
       for (const int unknown : sum.unknowns_of(element))
         if (unknown >= 0) {

@@ -1,23 +1,21 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "progress/progress.hpp"
 #include "system/element_sum.hpp"
+#include "system/element_tree.hpp"
 
 namespace signorini {
 
-/// The order of a sparse factorisation by geometric nested dissection (George 1973): the elements are cut
-/// into two halves that share few unknowns (system/short_cut.hpp), and the halves again, until a piece has a
-/// few; an unknown is eliminated in the smallest piece that holds all its elements, after everything inside
-/// the halves of that piece. Trailing unknowns are never eliminated.
-///
-/// The pieces are a complete binary tree, numbered as in a heap: 1 is the whole, 2 k and 2 k + 1 are the
-/// halves of k, and 0 stands outside, for what is never eliminated.
+/// The order of a sparse factorisation by geometric nested dissection (George 1973): of the tree of the
+/// elements' pieces, each unknown is eliminated in the smallest piece that holds all its elements, after
+/// everything inside the halves of that piece. Trailing unknowns are never eliminated: their piece is 0.
 class Dissection {
  public:
-  /// Throws what Progress throws.
+  /// By the tree that the sum has, or its own. Throws what Progress throws.
   Dissection(const ElementSum& sum, int trailing, Progress& progress);
 
   /// The unknowns that a piece couples when all inside it are eliminated: first the pivots, which it
@@ -31,17 +29,14 @@ class Dissection {
     std::span<const int> remaining() const { return unknowns.subspan(pivots); }
   };
 
-  int pieces() const { return 2 * leaves_; }  ///< one more than the largest number
-  bool is_leaf(int piece) const { return piece >= leaves_; }
+  int pieces() const { return tree_->pieces(); }
+  bool is_leaf(int piece) const { return tree_->is_leaf(piece); }
   Front front(int piece) const {
     const Place& place = places_[piece];
     return {std::span(unknowns_).subspan(place.first, place.size), place.pivots};
   }
-  /// The elements of a leaf.
-  std::span<const int> elements(int leaf) const {
-    const std::size_t first = first_element_[leaf - leaves_];
-    return std::span(elements_).subspan(first, first_element_[leaf - leaves_ + 1] - first);
-  }
+  std::span<const int> elements(int leaf) const { return tree_->elements(leaf); }
+  const std::shared_ptr<const ElementTree>& tree() const { return tree_; }
 
   /// The unknowns of all fronts, and where those of a piece begin among them. Whoever takes them leaves no
   /// fronts.
@@ -51,7 +46,21 @@ class Dissection {
   /// Calls visit with every piece, the halves before the whole.
   template <typename Visit>
   void for_each_piece(Visit visit) const {
-    visit_inside_out(1, visit);
+    for_each_piece([](int) { return true; }, visit);
+  }
+
+  /// The same without the pieces that are not wanted and all that they are made of.
+  template <typename Wanted, typename Visit>
+  void for_each_piece(Wanted is_wanted, Visit visit) const {
+    const auto visit_within = [&](const auto& self, int piece) -> void {
+      if (!is_wanted(piece)) return;
+      if (!is_leaf(piece)) {
+        self(self, 2 * piece);
+        self(self, 2 * piece + 1);
+      }
+      visit(piece);
+    };
+    visit_within(visit_within, 1);
   }
 
   /// The other way round: the whole before its halves.
@@ -66,20 +75,10 @@ class Dissection {
     int size = 0, pivots = 0;
   };
 
-  void cut(const ElementSum& sum, Progress& progress);
   void place_unknowns(const ElementSum& sum, int trailing);
   std::vector<int> unknowns_in(const ElementSum& sum, int leaf) const;
   std::vector<int> left_by_halves(int piece) const;
   bool is_before(int a, int b) const;
-
-  template <typename Visit>
-  void visit_inside_out(int piece, Visit& visit) const {
-    if (!is_leaf(piece)) {
-      visit_inside_out(2 * piece, visit);
-      visit_inside_out(2 * piece + 1, visit);
-    }
-    visit(piece);
-  }
 
   template <typename Visit>
   void visit_outside_in(int piece, Visit& visit) const {
@@ -89,11 +88,9 @@ class Dissection {
     visit_outside_in(2 * piece, visit);
   }
 
-  int leaves_ = 1;
-  std::vector<int> elements_;               ///< leaf by leaf
-  std::vector<std::size_t> first_element_;  ///< of each leaf, and behind the last
-  std::vector<int> eliminated_in_;          ///< the piece of each unknown
-  std::vector<Place> places_;               ///< of each piece's front in unknowns_
+  std::shared_ptr<const ElementTree> tree_;
+  std::vector<int> eliminated_in_;  ///< the piece of each unknown
+  std::vector<Place> places_;       ///< of each piece's front in unknowns_
   std::vector<int> unknowns_;
 };
 

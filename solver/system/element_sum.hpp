@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "problem/field.hpp"
+#include "system/element_tree.hpp"
 
 namespace signorini {
 
@@ -17,6 +19,8 @@ struct ElementSum {
   std::vector<int> matrix_of;    ///< the number of each element's matrix
   std::vector<double> matrices;  ///< per_element² numbers each
   std::vector<Point> centres;    ///< where the elements lie
+  /// How they are cut into pieces, if another sum on the mesh was dissected before.
+  std::shared_ptr<const ElementTree> tree;
 
   int elements() const { return static_cast<int>(matrix_of.size()); }
   std::span<const int> unknowns_of(int element) const {
@@ -25,6 +29,15 @@ struct ElementSum {
   const double* matrix(int element) const {
     return matrices.data() + static_cast<std::size_t>(matrix_of[element]) * per_element * per_element;
   }
+
+  /// Takes a matrix and answers its number.
+  int keep(const double* values);
+  /// That of one of the last few among `known` that is equal but for rounding, or takes it and adds its
+  /// number to them.
+  int keep(const double* values, std::vector<int>& known);
+
+  /// That of the whole matrix.
+  std::vector<double> diagonal() const;
 };
 
 }  // namespace signorini

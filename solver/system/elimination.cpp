@@ -61,13 +61,13 @@ LocalFields Elimination::recover(const LocalVector& coupling, const LocalVector&
   // A translation has no stress. Without it the traces are as small as their differences, and the stress
   // keeps its digits on small triangles.
   const Translation translation(coupling, spaces_);
-  const LocalVector right = coupling_.transpose() * (coupling - translation.traces);
+  const LocalVector right = coupling_.transpose().lazyProduct(coupling - translation.traces);
   LocalFields fields = solve(right, -load);
   // Near incompressibility W is badly conditioned; one correction brings the balance back to rounding and
   // the volume's strain to its digits.
   const LocalFields correction =
       solve(right - strain(fields.stress) - spaces_.divergence.transpose().lazyProduct(fields.displacement),
-            -load - spaces_.divergence * fields.stress);
+            -load - spaces_.divergence.lazyProduct(fields.stress));
   fields.stress += correction.stress;
   fields.displacement += correction.displacement;
   fields.displacement += translation.displacement;
@@ -76,7 +76,7 @@ LocalFields Elimination::recover(const LocalVector& coupling, const LocalVector&
 }
 
 LocalFields Elimination::respond(const LocalVector& coupling_change, const LocalVector& lack) const {
-  LocalFields fields = solve(coupling_.transpose() * coupling_change, lack);
+  LocalFields fields = solve(coupling_.transpose().lazyProduct(coupling_change), lack);
   fields.force = force(fields.stress);
   return fields;
 }

@@ -35,8 +35,8 @@ class Elimination {
                       const std::function<LocalVector(const LocalVector& stress)>& strain) const;
   /// What the fields change by if the coupling does and div σ takes up what it lacks, −F − B σ.
   LocalFields respond(const LocalVector& coupling_change, const LocalVector& lack) const;
-  LocalVector force(const LocalVector& stress) const { return coupling_ * stress; }  ///< G σ
-  const LocalMatrix& compliance() const { return compliance_matrix_; }               ///< M
+  LocalVector force(const LocalVector& stress) const { return coupling_.lazyProduct(stress); }  ///< G σ
+  const LocalMatrix& compliance() const { return compliance_matrix_; }                          ///< M
 
  private:
   LocalFields solve(const LocalVector& a, const LocalVector& b) const;

@@ -41,8 +41,52 @@ void require_stiffness(std::span<const int> unknowns, int pivots, const double* 
   }
 }
 
-Factor::Factor(Panels panels, Eigen::MatrixXd complement)
-    : panels_(std::move(panels)), complement_(std::move(complement)) {
+namespace {
+
+using Rows = Eigen::Map<Eigen::VectorXd>;
+using GivenRows = Eigen::Map<const Eigen::VectorXd>;
+
+/// Panels with up to so many numbers are gone through without BLAS, a call of which takes longer.
+constexpr int kFewNumbers = 600;
+
+bool is_small(const Panels::Panel& panel) {
+  return panel.size * panel.pivots <= kFewNumbers;
+}
+
+/// x_p = L_pp⁻¹ x_p, and what that takes off the other rows: rest = −L_rp x_p.
+void eliminate(const Panels::Panel& panel, const double* columns, double* x) {
+  const int m = panel.size, p = panel.pivots;
+  if (!is_small(panel)) {
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, x, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m - p, p, -1, columns + p, m, x, 1, 0, x + p, 1);
+    return;
+  }
+  std::fill(x + p, x + m, 0.);
+  for (int k = 0; k < p; ++k, columns += m) {
+    x[k] /= columns[k];
+    Rows(x + k + 1, m - k - 1) -= x[k] * GivenRows(columns + k + 1, m - k - 1);
+  }
+}
+
+/// x_p = L_pp⁻ᵀ (x_p − L_rpᵀ x_r).
+void substitute(const Panels::Panel& panel, const double* columns, double* x) {
+  const int m = panel.size, p = panel.pivots;
+  if (!is_small(panel)) {
+    cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, x + p, 1, 1, x, 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, p, columns, m, x, 1);
+    return;
+  }
+  for (int k = p - 1; k >= 0; --k) {
+    const double* column = columns + static_cast<std::ptrdiff_t>(k) * m;
+    x[k] -= GivenRows(column + k + 1, m - k - 1).dot(GivenRows(x + k + 1, m - k - 1));
+    x[k] /= column[k];
+  }
+}
+
+}  // namespace
+
+Factor::Factor(Panels panels, Eigen::MatrixXd complement, std::shared_ptr<const ElementTree> tree)
+    : panels_(std::move(panels)), complement_(std::move(complement)), tree_(std::move(tree)) {
   for (const Panels::Panel& panel : panels_.all) largest_ = std::max(largest_, panel.size);
 }
 
@@ -55,11 +99,9 @@ void Factor::forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progres
     const int m = panel.size, p = panel.pivots;
     pace.add(static_cast<std::size_t>(m) * p);
     for (int k = 0; k < p; ++k) local[k] = x[unknowns[k]];
-    const double* columns = panels_.columns(panel);
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, p, columns, m, local, 1);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, m - p, p, 1, columns + p, m, local, 1, 0, local + p, 1);
+    eliminate(panel, panels_.columns(panel), local);
     for (int k = 0; k < p; ++k) x[unknowns[k]] = local[k];
-    for (int k = p; k < m; ++k) x[unknowns[k]] -= local[k];
+    for (int k = p; k < m; ++k) x[unknowns[k]] += local[k];
   }
 }
 
@@ -73,9 +115,7 @@ void Factor::backward(Eigen::VectorXd& x, Workspace& workspace, Progress& progre
     const int m = panel.size, p = panel.pivots;
     pace.add(static_cast<std::size_t>(m) * p);
     for (int k = 0; k < m; ++k) local[k] = x[unknowns[k]];
-    const double* columns = panels_.columns(panel);
-    cblas_dgemv(CblasColMajor, CblasTrans, m - p, p, -1, columns + p, m, local + p, 1, 1, local, 1);
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, p, columns, m, local, 1);
+    substitute(panel, panels_.columns(panel), local);
     for (int k = 0; k < p; ++k) x[unknowns[k]] = local[k];
   }
 }
@@ -103,7 +143,7 @@ void Factor::solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress)
 std::size_t Factor::bytes() const {
   const std::size_t numbers = panels_.count + static_cast<std::size_t>(complement_.size());
   return sizeof(Factor) + numbers * sizeof(double) + panels_.all.capacity() * sizeof(Panels::Panel) +
-         panels_.unknowns.capacity() * sizeof(int);
+         panels_.unknowns.capacity() * sizeof(int) + (tree_ ? tree_->bytes() : 0);
 }
 
 }  // namespace signorini

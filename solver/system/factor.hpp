@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "progress/progress.hpp"
+#include "system/element_tree.hpp"
 
 namespace signorini {
 
@@ -34,7 +35,7 @@ Numbers allocate_numbers(std::size_t count);
 Eigen::MatrixXd unset_square(Eigen::Index size);
 
 /// The columns of a Cholesky factor in the order of the elimination, in dense panels: neighbouring columns
-/// with the same rows below their triangle.
+/// with the same rows below their triangle. Panels that are equal may be the same numbers.
 struct Panels {
   struct Panel {
     std::size_t first_unknown, first_value;
@@ -74,8 +75,8 @@ class Factor {
     Eigen::VectorXd front;
   };
 
-  /// The panels of L, in whose rows stand K_CI L⁻ᵀ too.
-  Factor(Panels panels, Eigen::MatrixXd complement);
+  /// The panels of L, in whose rows stand K_CI L⁻ᵀ too. The tree, if there is one, is that of its dissection.
+  Factor(Panels panels, Eigen::MatrixXd complement, std::shared_ptr<const ElementTree> tree = {});
 
   /// S, in the order of the trailing unknowns.
   const Eigen::MatrixXd& complement() const { return complement_; }
@@ -95,6 +96,8 @@ class Factor {
   void solve(Eigen::VectorXd& x, Workspace& workspace, Progress& progress) const;
 
   const Panels& panels() const { return panels_; }
+  /// How the elements were cut into pieces; may be null.
+  const std::shared_ptr<const ElementTree>& tree() const { return tree_; }
 
   /// The memory that it takes.
   std::size_t bytes() const;
@@ -106,6 +109,7 @@ class Factor {
   Panels panels_;
   int largest_ = 0;  ///< panel
   Eigen::MatrixXd complement_;
+  std::shared_ptr<const ElementTree> tree_;
 };
 
 }  // namespace signorini

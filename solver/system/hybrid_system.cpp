@@ -19,16 +19,13 @@ Shape eliminate(const ElementMatrices& matrices, const Spaces& spaces) {
   return {elimination.stiffness(), elimination.coupling_load()};
 }
 
-/// The same with the number that its stiffness has in the sum.
+/// The same with the number that its stiffness has in the sum, and those of the last that were turned: along
+/// a side triangles of the same shape have the same.
 struct NumberedShape {
   Shape shape;
   int number;
+  std::vector<int> turned;
 };
-
-int append(ElementSum& sum, const LocalMatrix& matrix) {
-  sum.matrices.insert(sum.matrices.end(), matrix.data(), matrix.data() + matrix.size());
-  return static_cast<int>(sum.matrices.size() / static_cast<std::size_t>(matrix.size())) - 1;
-}
 
 /// The degrees of freedom of one triangle, datum + sign · x[unknown], in the normal and tangential components
 /// of its edges where it has them.
@@ -92,17 +89,23 @@ HybridSystem assemble(const Discretization& discrete, Progress& progress) {
   ElementSum& sum = system.matrix;
   sum.size = discrete.traces.unknowns();
   sum.per_element = discrete.traces.dofs_per_triangle();
+  const auto triangles = static_cast<std::size_t>(discrete.triangles());
+  sum.unknowns.reserve(triangles * static_cast<std::size_t>(sum.per_element));
+  sum.matrix_of.reserve(triangles);
+  sum.centres.reserve(triangles);
   system.right = discrete.coupling_load;
   PerShape<NumberedShape> shapes(discrete);
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    const auto& [shape, number] = shapes(t, [&](const ElementMatrices& matrices) -> NumberedShape {
+    NumberedShape& numbered = shapes(t, [&](const ElementMatrices& matrices) -> NumberedShape {
       const Shape made = eliminate(matrices, discrete.spaces());
-      return {made, append(sum, made.stiffness)};
+      return {made, sum.keep(made.stiffness.data()), {}};
     });
+    const Shape& shape = numbered.shape;
     const Dofs dofs(discrete.traces, t);
     sum.unknowns.insert(sum.unknowns.end(), dofs.unknowns().begin(), dofs.unknowns().end());
-    sum.matrix_of.push_back(dofs.are_plain() ? number : append(sum, dofs.turned(shape.stiffness)));
+    sum.matrix_of.push_back(
+        dofs.are_plain() ? numbered.number : sum.keep(dofs.turned(shape.stiffness).data(), numbered.turned));
     sum.centres.push_back(discrete.mesh.centroid(t));
     dofs.add_load(shape.coupling_load.lazyProduct(discrete.load.col(t)), shape.stiffness, system.right);
   }

@@ -4,12 +4,14 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <unordered_map>
 
 #include <cblas.h>
 
 #include "progress/pace.hpp"
 #include "system/dissection.hpp"
 #include "system/elimination_in_blocks.hpp"
+#include "system/repeated_pieces.hpp"
 
 namespace signorini {
 namespace {
@@ -35,21 +37,24 @@ class Stack {
   std::size_t used_ = 0;
 };
 
-/// The numerical part, which fills the panels. What a piece leaves is a square matrix of its front's rest,
-/// kept until the piece around it has taken it in. A piece's own is made while those of its halves still
-/// stand, so pieces of odd and of even depth use two stacks, and each is last in, first out.
+/// The numerical part, which fills the panels of the original pieces. What a piece leaves is a square matrix
+/// of its front's rest, kept until the pieces that it is a half of have taken it in. Mostly that is one. Its
+/// own is made while those of its halves still stand, so pieces of odd and of even depth use two stacks, and
+/// each is last in, first out. What several take in stands by itself.
 class FrontElimination {
  public:
-  FrontElimination(const Dissection& order, double* panels, const ElementSum& matrix, Progress& progress)
+  FrontElimination(const Dissection& order, const RepeatedPieces& repeated, double* panels,
+                   const ElementSum& matrix, Progress& progress)
       : order_(order),
+        repeated_(repeated),
         next_panel_(panels),
         matrix_(matrix),
         progress_(progress),
         pace_(progress),
         position_(matrix.size),
         stacks_(make_stacks()),
-        diagonal_(matrix.size) {
-    order_.for_each_piece([this](int piece) { eliminate(piece); });
+        diagonal_(matrix.diagonal()) {
+    for_each_original([this](int piece) { eliminate(piece); });
   }
 
   /// What the whole leaves, in the order of the trailing unknowns.
@@ -75,22 +80,37 @@ class FrontElimination {
   static int depth_parity(int piece) { return std::bit_width(static_cast<unsigned>(piece)) % 2; }
   Stack& stack(int piece) { return stacks_[depth_parity(piece)]; }
 
+  template <typename Visit>
+  void for_each_original(Visit visit) const {
+    order_.for_each_piece([this](int piece) { return repeated_.is_original(piece); }, visit);
+  }
+  /// Whether what it leaves is taken in more than once.
+  bool is_shared(int original) const { return repeated_.uses(original) > 1; }
+
   std::array<Stack, 2> make_stacks() const {
     std::array<std::size_t, 2> used{}, most{};
-    order_.for_each_piece([&](int piece) {
+    for_each_original([&](int piece) {
       const int own = depth_parity(piece);
-      used[own] += rest_size(order_.front(piece));
+      if (!is_shared(piece)) used[own] += rest_size(order_.front(piece));
       most[own] = std::max(most[own], used[own]);
       if (order_.is_leaf(piece)) return;
-      for (const int half : {2 * piece, 2 * piece + 1}) used[1 - own] -= rest_size(order_.front(half));
+      for (const int half : {2 * piece, 2 * piece + 1})
+        if (!is_shared(repeated_.original(half))) used[1 - own] -= rest_size(order_.front(half));
     });
     return {Stack(most[0]), Stack(most[1])};
+  }
+
+  /// Where what a piece leaves is to stand.
+  double* make_rest(int piece, std::size_t size) {
+    if (!is_shared(piece)) return stack(piece).push(size);
+    return shared_.emplace(piece, Shared{allocate_numbers(size), repeated_.uses(piece)})
+        .first->second.values.get();
   }
 
   void eliminate(int piece) {
     progress_.check();
     const Dissection::Front front = order_.front(piece);
-    const Target target{next_panel_, stack(piece).push(rest_size(front)), front.size(), front.pivots};
+    const Target target{next_panel_, make_rest(piece, rest_size(front)), front.size(), front.pivots};
     for (int k = 0; k < front.size(); ++k) {
       pace_.add(static_cast<std::size_t>(front.size() - k));
       std::fill_n(target[k] + k, front.size() - k, 0.);
@@ -130,8 +150,6 @@ class FrontElimination {
     for (int j = 0; j < n; ++j) {
       if (unknowns[j] < 0) continue;
       const int column = position_[unknowns[j]];
-      for (int i = 0; i < n; ++i)
-        if (unknowns[i] == unknowns[j]) diagonal_[unknowns[j]] += values[j * n + i];
       for (int i = 0; i < n; ++i) {
         // Two rows of an element may be one unknown; then both orders of the pair fall on the diagonal.
         if (unknowns[i] >= 0 && position_[unknowns[i]] >= column)
@@ -141,11 +159,21 @@ class FrontElimination {
   }
 
   void add_half(int half, const Target& target) {
+    const int original = repeated_.original(half);
+    if (!is_shared(original)) {
+      stack(half).pop(rest_size(order_.front(half)));
+      add_rest(half, stack(half).top(), target);
+      return;
+    }
+    const auto shared = shared_.find(original);
+    add_rest(half, shared->second.values.get(), target);
+    if (--shared->second.uses_left == 0) shared_.erase(shared);
+  }
+
+  void add_rest(int half, const double* values, const Target& target) {
     const Dissection::Front front = order_.front(half);
     const std::span<const int> unknowns = front.remaining();
     const int n = front.rest();
-    stack(half).pop(rest_size(front));
-    const double* values = stack(half).top();
     places_.resize(n);
     for (int k = 0; k < n; ++k) places_[k] = position_[unknowns[k]];
     for (int j = 0; j < n; ++j) {
@@ -181,7 +209,13 @@ class FrontElimination {
     }
   }
 
+  struct Shared {
+    Numbers values;
+    int uses_left;
+  };
+
   const Dissection& order_;
+  const RepeatedPieces& repeated_;
   double* next_panel_;
   const ElementSum& matrix_;
   Progress& progress_;
@@ -189,28 +223,36 @@ class FrontElimination {
   std::vector<int> position_;  ///< in the present front, of each of its unknowns
   std::vector<int> places_;
   std::array<Stack, 2> stacks_;
-  std::vector<double> diagonal_;  ///< of the matrix, as far as it is assembled
+  std::unordered_map<int, Shared> shared_;  ///< what originals have left that others still take in
+  std::vector<double> diagonal_;            ///< of the matrix
 };
 
 }  // namespace
 
 Factor multifrontal(const ElementSum& matrix, int trailing, Progress& progress) {
   Dissection order(matrix, trailing, progress);
+  const RepeatedPieces repeated(order, matrix, progress);
   Panels panels;
   int pivots = 0;
+  std::vector<std::size_t> first_value(order.pieces());
   order.for_each_piece([&](int piece) {
     const Dissection::Front front = order.front(piece);
     pivots += front.pivots;
     if (front.pivots == 0) return;
-    panels.all.push_back({order.first_unknown(piece), panels.count, front.size(), front.pivots});
-    panels.count += static_cast<std::size_t>(front.size()) * front.pivots;
+    first_value[piece] = panels.count;
+    if (repeated.is_original(piece))
+      panels.count += static_cast<std::size_t>(front.size()) * front.pivots;
+    else
+      first_value[piece] = first_value[repeated.original(piece)];
+    panels.all.push_back({order.first_unknown(piece), first_value[piece], front.size(), front.pivots});
   });
   const bool rows_of_zeros = pivots != matrix.size - trailing || order.front(1).rest() != trailing;
   if (rows_of_zeros) throw NotPositiveDefinite();
   panels.values = allocate_numbers(panels.count);
-  Eigen::MatrixXd complement = FrontElimination(order, panels.values.get(), matrix, progress).complement();
+  Eigen::MatrixXd complement =
+      FrontElimination(order, repeated, panels.values.get(), matrix, progress).complement();
   panels.unknowns = order.take_unknowns();
-  return {std::move(panels), std::move(complement)};
+  return {std::move(panels), std::move(complement), order.tree()};
 }
 
 }  // namespace signorini

@@ -13,20 +13,20 @@ namespace {
 /// squares it has once their length.
 constexpr double kOfSquares = 1.25;
 
+/// Extents that differ by less differ by rounding: pieces that are alike are to be cut alike.
+constexpr double kLonger = 1 + 1e-9;
+
 /// The least part of the elements that a half has.
 constexpr double kLeastHalf = 0.3;
 
 Eigen::Vector2d extents(std::span<const Centre> piece) {
   Eigen::AlignedBox2d box;
-  for (const Centre& centre : piece) box.extend(centre.at);
+  for (const Centre& centre : piece) box.extend(Point(centre.at[0], centre.at[1]));
   return box.sizes();
 }
 
 auto before(int along) {
-  return [along](const Centre& a, const Centre& b) {
-    const int across = 1 - along;
-    return a.at[along] != b.at[along] ? a.at[along] < b.at[along] : a.at[across] < b.at[across];
-  };
+  return [along](const Centre& a, const Centre& b) { return a.at[along] < b.at[along]; };
 }
 
 void divide(std::span<Centre> piece, std::size_t first_half, int along) {
@@ -35,6 +35,23 @@ void divide(std::span<Centre> piece, std::size_t first_half, int along) {
 }
 
 }  // namespace
+
+std::vector<Centre> centres_of(const ElementSum& sum) {
+  Eigen::AlignedBox2d box;
+  for (const Point& centre : sum.centres) box.extend(centre);
+  const Eigen::Vector2d sizes = box.sizes();
+  // Across columns of squares x varies by much more, even if there are a million.
+  constexpr double tilt = 1e-8;
+  const double of_x = sizes.y() > 0 ? tilt * sizes.x() / sizes.y() : 0,
+               of_y = sizes.x() > 0 ? tilt * sizes.y() / sizes.x() : 0;
+  std::vector<Centre> centres;
+  centres.reserve(sum.centres.size());
+  for (int e = 0; e < sum.elements(); ++e) {
+    const Point own = sum.centres[e] - box.min();
+    centres.push_back({{own.x() + of_x * own.y(), own.y() + of_y * own.x()}, e});
+  }
+  return centres;
+}
 
 ShortCut::ShortCut(const ElementSum& sum, int leaves)
     : sum_(sum),
@@ -48,7 +65,7 @@ ShortCut::ShortCut(const ElementSum& sum, int leaves)
 std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
   const std::size_t middle = piece.size() / 2;
   const Eigen::Vector2d extent = extents(piece);
-  const int longer = extent.x() >= extent.y() ? 0 : 1;
+  const int longer = extent.y() > kLonger * extent.x() ? 1 : 0;
   divide(piece, middle, longer);
   if (piece.size() < kFew) return middle;
   const double size = static_cast<double>(piece.size()), most = elements_per_leaf_ * leaves;

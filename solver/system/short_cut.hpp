@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -8,11 +9,14 @@
 
 namespace signorini {
 
-/// Where an element of a sum lies.
+/// Where an element of a sum lies. The axes are tilted by so little that those of a column or row of squares
+/// come one after the other, and no two at once.
 struct Centre {
-  Point at;
+  std::array<double, 2> at;
   int element;
 };
+
+std::vector<Centre> centres_of(const ElementSum& sum);
 
 /// Cuts pieces of a mesh in two, across x or y, so that the halves share few unknowns.
 ///

@@ -33,11 +33,11 @@ Solution solve_alone(const api::Request& request, Observer& observer) {
 
 TEST(Run, BeyondItsMemoryEndsWithAClearWord) {
   if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
-  const Ending ending = run_within(2e6, solve_alone);
+  const Ending ending = run_within(1e6, solve_alone);
   EXPECT_EQ(ending.status, JobStatus::failed);
   ASSERT_TRUE(ending.error);
   EXPECT_EQ(ending.error->kind, "memory-exceeded");
-  EXPECT_NE(ending.error->detail.find("2 MB"), std::string::npos) << ending.error->detail;
+  EXPECT_NE(ending.error->detail.find("1 MB"), std::string::npos) << ending.error->detail;
   EXPECT_EQ(run_within(1e9, solve_alone).status, JobStatus::succeeded);
 }
 
@@ -45,7 +45,7 @@ TEST(Run, BeyondItsMemoryEndsWithAClearWord) {
 TEST(Run, CountsTheMemoryOfItsStudy) {
   if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
   nlohmann::json problem = paper_problem(8);
-  problem["study"] = {{"divisions", {16, 64}}, {"schemes", {"nonconforming"}}};
+  problem["study"] = {{"divisions", {16, 128}}, {"schemes", {"nonconforming"}}};
   const api::Request request = api::parse_request(problem.dump());
   Observer indifferent;
   const auto peak = static_cast<double>(solve_alone(request, indifferent).summary.peak_memory_bytes);

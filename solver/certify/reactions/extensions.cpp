@@ -79,8 +79,9 @@ double Extensions::Hat::operator()(const Point& x) const {
 }
 
 Extensions::Extensions(const Discretization& discrete, const LawOnMesh& laws, Factorization by,
-                       Progress& progress)
+                       Progress& progress, std::shared_ptr<const ElementTree> tree)
     : discrete_(discrete), progress_(progress) {
+  stiffness_.tree = std::move(tree);
   hold_parts();
   if (components() == 1)
     add_elements<1>(laws);
@@ -147,22 +148,35 @@ void Extensions::add_elements(const LawOnMesh& laws) {
   for (int& unknown : unknowns_)
     if (unknown == 0) unknown = stiffness_.size++;
   stiffness_.per_element = 3 * D;
+  const auto triangles = static_cast<std::size_t>(discrete_.triangles());
+  stiffness_.unknowns.reserve(3 * D * triangles);
+  stiffness_.matrix_of.reserve(triangles);
+  stiffness_.centres.reserve(triangles);
   LawField<D> law(discrete_.problem.material);
-  PerShape<int> shapes(discrete_);
-  const auto add = [&](int t, bool turns) {
+  struct OfShape {
+    int plain = -1;
+    std::vector<int> turned = {};
+  };
+  PerShape<OfShape> shapes(discrete_);
+  const auto matrix_of = [&](int t, bool turns) {
     const AffineMap map(mesh.corners(t));
     const Eigen::Matrix<double, 2 * D, 3 * D> strain = strains<D>(map);
     Eigen::MatrixXd matrix = strain.transpose() * stiffness_from_above<D>(t, map, law, laws) * strain;
     if (turns) matrix = turned(t, std::move(matrix));
     matrix.diagonal() *= 1 + kLoose;
-    stiffness_.matrices.insert(stiffness_.matrices.end(), matrix.data(), matrix.data() + matrix.size());
-    return static_cast<int>(stiffness_.matrices.size() / matrix.size()) - 1;
+    return matrix;
   };
   for (int t = 0; t < discrete_.triangles(); ++t) {
     progress_.check_in(t);
     const bool turns = std::ranges::any_of(mesh.triangles[t], [&](int point) { return is_turned[point]; });
     is_turned_.push_back(turns);
-    stiffness_.matrix_of.push_back(turns ? add(t, true) : shapes(t, [&] { return add(t, false); }));
+    OfShape& numbers = shapes(t, [] { return OfShape(); });
+    if (turns) {
+      stiffness_.matrix_of.push_back(stiffness_.keep(matrix_of(t, true).data(), numbers.turned));
+    } else {
+      if (numbers.plain < 0) numbers.plain = stiffness_.keep(matrix_of(t, false).data());
+      stiffness_.matrix_of.push_back(numbers.plain);
+    }
     stiffness_.centres.push_back(mesh.centroid(t));
     for (const int point : mesh.triangles[t])
       for (int c = 0; c < D; ++c) stiffness_.unknowns.push_back(unknowns_[point * D + c]);

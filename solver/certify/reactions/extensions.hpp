@@ -29,8 +29,10 @@ struct Extension {
 /// direction of its condition.
 class Extensions {
  public:
-  /// All must outlive it. Throws what factorize() throws.
-  Extensions(const Discretization& discrete, const LawOnMesh& laws, Factorization by, Progress& progress);
+  /// All must outlive it. `tree`: how the triangles were cut into pieces before, if they were. Throws what
+  /// factorize() throws.
+  Extensions(const Discretization& discrete, const LawOnMesh& laws, Factorization by, Progress& progress,
+             std::shared_ptr<const ElementTree> tree = {});
 
   /// Of each support, its number in mesh.boundary.
   const std::vector<int>& supports() const { return supports_; }

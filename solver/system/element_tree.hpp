@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "progress/progress.hpp"
+
+namespace signorini {
+
+struct ElementSum;
+
+/// The elements of a mesh, cut into two halves that share few unknowns (system/short_cut.hpp), and the halves
+/// again, until a piece has a few.
+///
+/// The pieces are a complete binary tree, numbered as in a heap: 1 is the whole, 2 k and 2 k + 1 are the
+/// halves of k. It depends on where the elements lie and on what they share: other unknowns on the same mesh
+/// may be dissected by the same tree.
+class ElementTree {
+ public:
+  /// Throws what Progress throws.
+  ElementTree(const ElementSum& sum, Progress& progress);
+
+  int leaves() const { return leaves_; }
+  int pieces() const { return 2 * leaves_; }  ///< one more than the largest number
+  bool is_leaf(int piece) const { return piece >= leaves_; }
+  /// The elements of a leaf, in the order of their numbers.
+  std::span<const int> elements(int leaf) const {
+    const std::size_t first = first_element_[leaf - leaves_];
+    return std::span(elements_).subspan(first, first_element_[leaf - leaves_ + 1] - first);
+  }
+
+  /// The memory that it takes.
+  std::size_t bytes() const {
+    return elements_.capacity() * sizeof(int) + first_element_.capacity() * sizeof(std::size_t);
+  }
+
+ private:
+  int leaves_;
+  std::vector<int> elements_;               ///< leaf by leaf
+  std::vector<std::size_t> first_element_;  ///< of each leaf, and behind the last
+};
+
+}  // namespace signorini
