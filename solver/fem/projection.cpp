@@ -294,9 +294,7 @@ Projection project(const Field& field, const std::array<Point, 3>& corners,
 }
 
 std::optional<double> constant_on(const Field& field, const Eigen::AlignedBox2d& box, double rounding) {
-  const Vector twice = 2 * box.sizes();
-  const std::array<Point, 3> around{box.min(), box.min() + Vector(twice.x(), 0),
-                                    box.min() + Vector(0, twice.y())};
+  const std::array<Point, 3> around = triangle_around(box);
   const std::optional<double> value = only_value(field, around);
   return value && rounding_on(field, around, rounding) == 0 ? value : std::nullopt;
 }

@@ -2,8 +2,6 @@
 
 #include <optional>
 
-#include <Eigen/Geometry>
-
 #include "fem/triangle_pieces.hpp"
 
 namespace signorini {

@@ -303,6 +303,11 @@ Series series_on_triangle(const Formula& formula, const Corners& corners, int or
   return series;
 }
 
+std::array<Point, 3> triangle_around(const Eigen::AlignedBox2d& box) {
+  const Vector twice = 2 * box.sizes();
+  return {box.min(), box.min() + Vector(twice.x(), 0), box.min() + Vector(0, twice.y())};
+}
+
 std::vector<Models> branches_on_triangle(std::span<const Field* const> fields, const Corners& corners) {
   Assumptions assumptions;
   std::vector<Models> branches;

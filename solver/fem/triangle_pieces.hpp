@@ -3,6 +3,8 @@
 #include <functional>
 #include <span>
 
+#include <Eigen/Geometry>
+
 #include "formula/series.hpp"
 #include "formula/taylor_model.hpp"
 #include "problem/field.hpp"
@@ -14,6 +16,9 @@ namespace signorini {
 /// at once, x_T its centroid. `undecided` tells whether a jump or a kink may lie in it. `strict`: Enclosure.
 Series series_on_triangle(const Formula& formula, const std::array<Point, 3>& corners, int order,
                           bool& undecided, bool strict = false);
+
+/// A triangle that holds a box.
+std::array<Point, 3> triangle_around(const Eigen::AlignedBox2d& box);
 
 /// The models of fields, constants or formulas, on a cell.
 using Models = std::vector<TaylorModel>;

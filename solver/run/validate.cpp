@@ -30,18 +30,13 @@ std::string listed(const std::vector<std::string>& names) {
 /// Steps that may be taken for each field, see steps_of().
 constexpr double kAll = std::numeric_limits<double>::infinity(), kOnCoarseMesh = 1e6;
 
-std::array<Point, 3> triangle_around(const Mesh& mesh) {
+/// What encloses its values everywhere tells so, in one look.
+bool is_known_to_be_finite(const Field& field, const Mesh& mesh) {
+  if (field.formula() == nullptr) return false;
   Eigen::AlignedBox2d box;
   for (const Point& point : mesh.points) box.extend(point);
-  const Vector twice = 2 * box.sizes();
-  return {box.min(), box.min() + Vector(twice.x(), 0), box.min() + Vector(0, twice.y())};
-}
-
-/// What encloses its values everywhere tells so, in one look.
-bool is_known_to_be_finite(const Field& field, const std::array<Point, 3>& around) {
   bool undecided = false;
-  return field.formula() != nullptr &&
-         is_known(range(series_on_triangle(*field.formula(), around, 0, undecided)));
+  return is_known(range(series_on_triangle(*field.formula(), triangle_around(box), 0, undecided)));
 }
 
 /// Collects the faults of a problem, subject by subject.
@@ -139,7 +134,7 @@ class Validation {
 
   void check_body(const Mesh& mesh) {
     for (const Field& component : problem_.body.fields())
-      if (!is_known_to_be_finite(component, triangle_around(mesh)))
+      if (!is_known_to_be_finite(component, mesh))
         attempt([&] { sample(mesh, {&component}, [&](const Point& x) { component(x); }); });
   }
 
