@@ -1,6 +1,8 @@
 #include "api/document/json_document.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -91,12 +93,20 @@ class Builder : public nlohmann::json_sax<json> {
 
   json take() { return std::move(root_); }
 
+  /// To be told of each byte that the parser takes: it keeps a string until that ends.
+  void read_byte() {
+    if (++bytes_since_value_ > limits::texts && !is_in_domain()) throw too_much_text();
+  }
+
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
   bool number_integer(number_integer_t value) override { return add(value); }
   bool number_unsigned(number_unsigned_t value) override { return add(value); }
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
-  bool string(string_t& value) override { return add(std::move(value)); }
+  bool string(string_t& value) override {
+    if (!is_in_domain() && (texts_ += value.size()) > limits::texts) throw too_much_text();
+    return add(std::move(value));
+  }
   bool binary(binary_t&) override { return false; }  // JSON text has none
 
   bool start_object(std::size_t) override { return open(json::object()); }
@@ -110,6 +120,7 @@ class Builder : public nlohmann::json_sax<json> {
       throw MalformedJson("the member " + in_quotes(name) + " at " + in_quotes(pointer_to(pointer(), name)) +
                           " is there twice; give it once");
     names_.back() = std::move(name);
+    bytes_since_value_ = 0;
     return true;
   }
 
@@ -129,6 +140,11 @@ class Builder : public nlohmann::json_sax<json> {
                          " in the body; no problem has as many");
   }
 
+  static MalformedJson too_much_text() {
+    return MalformedJson("the titles and expressions may have " + std::to_string(limits::texts) +
+                         " characters together and have more: shorten the expressions, or split the sweep");
+  }
+
   bool open(json container) {
     if (open_.size() == limits::nesting) throw nested_too_deeply();
     open_.push_back(insert(std::move(container)));
@@ -145,6 +161,7 @@ class Builder : public nlohmann::json_sax<json> {
   /// Puts the value where the document has come to. Containers do not move while they are open, for
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
+    bytes_since_value_ = 0;
     if (++values_ > limits::values) throw too_many(limits::values, "values");
     if (!is_in_domain() && ++values_beside_domain_ > limits::values_beside_domain)
       throw too_many(limits::values_beside_domain, "values outside the domain");
@@ -173,9 +190,33 @@ class Builder : public nlohmann::json_sax<json> {
   std::string_view text_;
   Observer* const observer_;
   json root_;
-  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0;
+  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0, texts_ = 0, bytes_since_value_ = 0;
   std::vector<json*> open_;
   std::vector<std::string> names_;  ///< the member being read of each open object
+};
+
+/// A text as the parser reads it, byte by byte, which tells the builder of each.
+class ReadByte {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  ReadByte(const char* at, Builder& builder) : at_(at), builder_(&builder) {}
+
+  char operator*() const { return *at_; }
+  ReadByte& operator++() {
+    builder_->read_byte();
+    ++at_;
+    return *this;
+  }
+  bool operator==(const ReadByte& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  Builder* builder_;
 };
 
 /// Walks along a text and knows what is in a string.
@@ -237,7 +278,7 @@ json parse_json(std::string_view text, Observer* observer) {
   refuse_what_is_no_text(text);
   refuse_long_numbers(text);
   Builder builder(text, observer);
-  json::sax_parse(text.begin(), text.end(), &builder);
+  json::sax_parse(ReadByte(text.data(), builder), ReadByte(text.data() + text.size(), builder), &builder);
   return builder.take();
 }
 

@@ -10,7 +10,7 @@
 namespace signorini::api {
 
 /// A text that is not a JSON document as this service takes them (I-JSON, RFC 7493): a syntax error,
-/// invalid UTF-8, a duplicate member, a number that overflows, more nesting, values or members than the
+/// invalid UTF-8, a duplicate member, a number that overflows, more nesting, values, members or text than the
 /// limits.
 class MalformedJson : public std::runtime_error {
  public:

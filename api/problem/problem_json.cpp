@@ -17,26 +17,6 @@ using nlohmann::json;
 /// What the check of a sweep's entries may take, about 10 ms; the solve checks the others.
 constexpr double most_steps_of_sweep = 1e6;
 
-std::size_t characters_in(const json& value) {
-  if (const auto* text = value.get_ptr<const std::string*>()) return text->size();
-  std::size_t characters = 0;
-  if (value.is_structured())
-    for (const json& element : value) characters += characters_in(element);
-  return characters;
-}
-
-/// Whether all but the domain holds no more text than a problem may; adds a fault if not.
-bool has_short_texts(const Value& document) {
-  std::size_t characters = 0;
-  for (const auto& [name, member] : document.json().items())
-    if (name != "domain") characters += characters_in(member);
-  if (characters <= limits::texts) return true;
-  document.fault("its titles and expressions have " + std::to_string(characters) +
-                 " characters together; they may have " + std::to_string(limits::texts) +
-                 ": shorten the expressions, or split the sweep");
-  return false;
-}
-
 /// A mesh that refines itself for a quantity needs one of that name.
 void check_goal(const Value& mesh, const Problem& problem) {
   const std::optional<Adaptive>& adaptive = problem.mesh.adaptive;
@@ -78,7 +58,7 @@ Problem read_problem(const Object& document) {
 Request read_request(const Value& value) {
   Request request;
   const auto document = value.object();
-  if (!document || !has_short_texts(value)) return request;
+  if (!document) return request;
   document->allow({"title", "tags", "model", "domain", "mesh", "material", "load", "boundary", "scheme",
                    "quantities", "solver", "sweep", "study"},
                   "a problem");

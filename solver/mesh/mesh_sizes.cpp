@@ -56,7 +56,7 @@ MeshSizes sizes_of(const MeshData& data) {
 
 /// The pieces into which a length is halved until none is longer.
 double halvings(double length, double longest) {
-  return std::exp2(std::max(0., std::ceil(std::log2(length / longest))));
+  return length <= longest ? 1 : std::exp2(std::ceil(std::log2(length / longest)));
 }
 
 /// What becomes of a stretch of the boundary: the mesher halves it until its pieces are no longer than the
@@ -66,7 +66,7 @@ struct Pieces {
     const double longest = std::min(size * (1 + 1e-9), 1.9 * stretch.width);
     count = halvings(stretch.length, longest);
     length = stretch.length / count;
-    reach_across = std::hypot(length, stretch.width) <= size;
+    reach_across = length * length + stretch.width * stretch.width <= size * size;
     constexpr double nearly = 0.7, layers = 3;  // of triangles, at least, that have others beside them
     if (length > nearly * size && stretch.width > layers * length) count *= kCutOnceMore;
   }
@@ -85,16 +85,14 @@ std::array<double, 2> shares_within(const Segment& edge, const Point& centre, do
   return {std::max(0., middle - half), std::min(1., middle + half)};
 }
 
-/// The edges that a local size makes of one of the boundary: those of its size, and on both sides of them
-/// those that grow.
-double edges_around(const LocalSize& local, const Segment& edge, double size) {
-  const double length = (edge[1] - edge[0]).norm(), reach = local.radius + local.size;
-  if (local.size >= std::min(size, length)) return 0;
-  const auto [begin, end] = shares_within(edge, local.at, reach);
+/// The edges that a local size makes of one of the boundary, whose edges would be no longer than `longest`:
+/// those of its size, and on both sides of them those that grow.
+double edges_around(const LocalSize& local, const Segment& edge, double longest) {
+  const auto [begin, end] = shares_within(edge, local.at, local.radius + local.size);
   if (end <= begin) return 0;
-  const double growing = std::log2(std::min(size, length) / local.size);
   const int sides = (begin > 0 ? 1 : 0) + (end < 1 ? 1 : 0);
-  return kCutOnceMore * (end - begin) * halvings(length, local.size) + kEdgesByDoubling * sides * growing;
+  const double growing = sides > 0 ? kEdgesByDoubling * sides * std::log2(longest / local.size) : 0;
+  return kCutOnceMore * (end - begin) * halvings((edge[1] - edge[0]).norm(), local.size) + growing;
 }
 
 /// Of a triangle whose sides are alike, by their length.
@@ -185,18 +183,12 @@ class PredictedSizes::OfPolygon {
         across += kTrianglesAcross * pieces;
       }
     triangles += across + by_area(std::max(0., area_ - along_it), size);
-    for (int e = 0; e < static_cast<int>(rings_.points.size()) && !request.sizes.empty(); ++e) {
-      const Segment edge = rings_.edge(e);
-      const Box box = box_around(edge, 0);
-      for (const LocalSize& local : request.sizes)
-        if (is_within(local.at, wider(box, local.radius + local.size)))
-          add(e, edges_around(local, edge, size));
-    }
+    add_edges_around(request.sizes, size, add);
     const bool are_many = request.sizes.size() * rings_.points.size() > kMostLookedAt;
     for (const LocalSize& local : request.sizes) triangles += around(local, size, are_many);
     for (const Cluster& cluster : clusters_)
-      triangles += kTrianglesByDoubling *
-                   std::max(0., std::log2(std::min(cluster.distance, size) / cluster.extent) - 1);
+      if (const double ratio = std::min(cluster.distance, size) / (2 * cluster.extent); ratio > 1)
+        triangles += kTrianglesByDoubling * std::log2(ratio);
     triangles = std::max(triangles, boundary);
     MeshSizes sizes;
     for (std::size_t part = 0; part < edges.size(); ++part)
@@ -221,6 +213,26 @@ class PredictedSizes::OfPolygon {
       const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other);
       if (sine > 0 && sine < sharp && (from - at).dot(to - at) > 0)
         tips_.push_back({at, {e, behind}, 0.5 * std::min(own, other), sine});
+    }
+  }
+
+  /// Calls add(edge, pieces) for each edge that a local size makes of one of the boundary.
+  template <typename Add>
+  void add_edges_around(std::vector<LocalSize> locals, double size, const Add& add) const {
+    if (locals.empty()) return;
+    // In a row, so that few are asked whether an edge lies within their reach.
+    const auto abscissa = [](const LocalSize& local) { return local.at.x(); };
+    std::ranges::sort(locals, {}, abscissa);
+    double widest = 0;
+    for (const LocalSize& local : locals) widest = std::max(widest, local.radius + local.size);
+    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
+      const Segment edge = rings_.edge(e);
+      const Box box = box_around(edge, 0);
+      const double longest = std::min(size, (edge[1] - edge[0]).norm());
+      for (auto local = std::ranges::lower_bound(locals, box.low.x() - widest, {}, abscissa);
+           local != locals.end() && local->at.x() <= box.high.x() + widest; ++local)
+        if (local->size < longest && is_within(local->at, wider(box, local->radius + local->size)))
+          add(e, edges_around(*local, edge, longest));
     }
   }
 

@@ -164,6 +164,18 @@ TEST(Budget, OnlyADomainHasMillionsOfValues) {
   EXPECT_EQ(found_soon(entries), "malformed");
 }
 
+/// It is not kept until its end is found. Blanks count as text, too.
+TEST(Budget, OnlyADomainHasLongTexts) {
+  json titled = square();
+  titled["title"] = std::string(15'000'000, 't');
+  EXPECT_EQ(found_soon(titled), "malformed");
+  json named = square();
+  named[std::string(15'000'000, 'n')] = 1;
+  EXPECT_EQ(found_soon(named), "malformed");
+  EXPECT_THROW(parse_request("{" + std::string(15'000'000, ' ') + "}"), MalformedJson);
+  EXPECT_EQ(found_soon({{"domain", {{"type", "gmsh"}, {"msh", std::string(2'000'000, 'm')}}}}), "/model");
+}
+
 /// A worker reads megabytes, and hears that it is to stop meanwhile.
 TEST(Budget, ReadingALongTextMayBeEnded) {
   class Ends : public Observer {
@@ -184,7 +196,7 @@ TEST(Budget, ASweepIsReadOnce) {
   json contact = square();
   contact["boundary"]["bottom"] = {{"type", "contact"}};
   const auto gap = [](const json& value) { return json{{"boundary", {{"bottom", {{"gap", value}}}}}}; };
-  EXPECT_EQ(found_soon(swept(contact, 10'000, gap(long_formula(1000)))), "the whole");
+  EXPECT_EQ(found_soon(swept(contact, 10'000, gap(long_formula(1000)))), "malformed");
   EXPECT_EQ(found_soon(swept(contact, 1000, gap(long_formula(980)))), "");
   EXPECT_EQ(found_soon(swept(contact, 10'000, gap("0.1 * x"))), "");
   EXPECT_EQ(found_soon(swept(polygon(ring(2000), {{"size", 1}}), 10'000, json::object())), "/sweep");
