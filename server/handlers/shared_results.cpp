@@ -1,5 +1,8 @@
 #include "server/handlers/shared_results.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <malloc.h>
 
 #include "server/http/error.hpp"
@@ -60,6 +63,14 @@ class SharedResults::Held {
   std::optional<JobResult> result_;
 };
 
+SharedResults::SharedResults(JobStore& store, std::size_t max_bytes, std::chrono::milliseconds patience,
+                             std::chrono::milliseconds linger)
+    : store_(store),
+      max_bytes_(max_bytes),
+      patience_(patience),
+      linger_(linger),
+      keeper_([this](const std::stop_token& stop) { let_go(stop); }) {}
+
 std::optional<JobResult> SharedResults::get(const std::string& id) {
   const std::size_t bytes = store_.result_memory(id);
   if (bytes <= small_result) return store_.result(id);
@@ -72,6 +83,7 @@ std::optional<JobResult> SharedResults::get(const std::string& id) {
   std::shared_ptr<const Held> held = place->held.lock();
   if (!held) place->held = held = std::make_shared<const Held>(*this, place, id, bytes);
   if (!held->result()) return std::nullopt;
+  linger(held);
   const auto& [problem, solution, history] = *held->result();
   return JobResult{part_of(held, problem), part_of(held, solution), part_of(held, history)};
 }
@@ -86,12 +98,44 @@ std::shared_ptr<SharedResults::Place> SharedResults::place_of(const std::string&
   return place;
 }
 
+void SharedResults::linger(std::shared_ptr<const Held> held) {
+  const std::lock_guard lock(mutex_);
+  if (awaiting_ > 0) return;
+  std::erase_if(lingering_, [&](const Lingering& each) { return each.held == held; });
+  lingering_.push_back({std::move(held), std::chrono::steady_clock::now() + linger_});
+  lingers_.notify_one();
+}
+
+/// What a result gives back needs the mutex, so the last copies of those that are over go without it.
+void SharedResults::let_go(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (lingers_.wait(lock, stop, [this] { return !lingering_.empty(); })) {
+    const auto until = lingering_.front().until;
+    lingers_.wait_until(lock, stop, until, [] { return false; });
+    if (stop.stop_requested()) return;
+    const auto now = std::chrono::steady_clock::now();
+    const auto first_to_stay =
+        std::ranges::find_if(lingering_, [&](const Lingering& each) { return each.until > now; });
+    std::vector<Lingering> over(std::make_move_iterator(lingering_.begin()),
+                                std::make_move_iterator(first_to_stay));
+    lingering_.erase(lingering_.begin(), first_to_stay);
+    lock.unlock();
+    over.clear();
+    lock.lock();
+  }
+}
+
 void SharedResults::take(std::size_t bytes) {
   std::unique_lock lock(mutex_);
   const auto fits = [&] { return taken_ == 0 || taken_ + bytes <= max_bytes_; };
   if (!fits()) {
     const ThreadPool::Waiting rest;
     ++awaiting_;
+    std::vector<Lingering> last;
+    last.swap(lingering_);
+    lock.unlock();
+    last.clear();
+    lock.lock();
     const bool is_room = given_back_.wait_for(lock, patience_, fits);
     --awaiting_;
     if (!is_room) throw too_many_results();

@@ -156,6 +156,25 @@ TEST_F(SharedResultsTest, AreTheSameForAll) {
   EXPECT_FALSE(results.get("unknown"));
 }
 
+/// Each part of a result that a client asked for cost reading the whole.
+TEST_F(SharedResultsTest, LingerForAMoment) {
+  SharedResults results(store_, 4 * megabyte, 60s, 400ms);
+  std::weak_ptr<const Solution> last = results.get("a")->solution;
+  EXPECT_EQ(results.get("a")->solution, last.lock());
+  const auto begin = Clock::now();
+  while (!last.expired() && Clock::now() - begin < 20s) std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(last.expired());
+  EXPECT_GT(Clock::now() - begin, 100ms);
+}
+
+TEST_F(SharedResultsTest, DoNotLingerInTheWay) {
+  SharedResults results(store_, 4 * megabyte, 60s, 60s);
+  const std::weak_ptr<const Solution> last = results.get("a")->solution;
+  ASSERT_FALSE(last.expired());
+  EXPECT_TRUE(results.get("b")->solution);
+  EXPECT_TRUE(last.expired());
+}
+
 TEST_F(SharedResultsTest, TakeTheirTurnsWithinTheBudget) {
   SharedResults results(store_, 4 * megabyte, 60s);
   auto first = results.get("a");
