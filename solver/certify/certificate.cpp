@@ -91,7 +91,7 @@ Certificate without_bound(const std::vector<Fault>& faults) {
 }
 
 Certificate certify_sound_data(const Discretization& discrete, const Solution& solution,
-                               const Eigen::VectorXd& coupling, Progress& progress) {
+                               const Eigen::VectorXd& coupling, ShapeNorms& norms, Progress& progress) {
   AdmissiblePair pair = admissible_pair(discrete, solution, coupling, progress);
   Certificate certificate;
   const double tolerance = kOfGap * std::min(1., estimate_gap(discrete, solution.stress, pair.v, progress));
@@ -105,8 +105,8 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
     of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);
     totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair), owners, progress);
   } else {
-    totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions), owners,
-                  progress);
+    totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions, norms),
+                  owners, progress);
   }
   if (totals.endless_gap) unmet.push_back(*totals.endless_gap);
   CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
@@ -133,9 +133,9 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
 }  // namespace
 
 Certificate certify(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& coupling,
-                    Progress& progress) {
+                    ShapeNorms& norms, Progress& progress) {
   try {
-    return certify_sound_data(discrete, solution, coupling, progress);
+    return certify_sound_data(discrete, solution, coupling, norms, progress);
   } catch (const InvalidProblem& unsound) {
     return without_bound(unsound.faults());
   }

@@ -10,6 +10,8 @@
 
 namespace signorini {
 
+class ShapeNorms;
+
 /// The error bound with its share in every triangle.
 struct Certificate {
   ErrorBound bound;  ///< not finite if there is none
@@ -28,9 +30,9 @@ struct Certificate {
 /// with Πf and Πt whose pressure p* on Γ_C is nowhere negative: see THEORY.md and bound_from(). Data that
 /// turn out to be unsound in a point that the discrete problem does not ask leave it without a bound.
 ///
-/// `coupling`: the unknowns of the trace space.
+/// `coupling`: the unknowns of the trace space. `norms`: those of the law, for others too.
 Certificate certify(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& coupling,
-                    Progress& progress);
+                    ShapeNorms& norms, Progress& progress);
 
 /// Makes the bound of a solution one of another stress τ of the same spaces, such as an iterate:
 /// ‖σ − τ‖_C ≤ ‖σ − σ_h‖_C + ‖σ_h − τ‖_C. The energies stay, those of the pair (σ*, v).

@@ -5,12 +5,11 @@
 #include "certify/admissible_pair.hpp"
 #include "certify/data/law_pieces.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
-#include "certify/elasticity/johnson_mercier_operators.hpp"
+#include "certify/elasticity/shape_norms.hpp"
 #include "certify/membrane/quadratic_balance.hpp"
 #include "certify/pair_term.hpp"
 #include "certify/patches/patch_pairs.hpp"
 #include "certify/tensor.hpp"
-#include "fem/per_shape.hpp"
 
 namespace signorini {
 
@@ -106,22 +105,16 @@ class ElasticSums {
   };
 
   /// Of several pairs: `gap`, `strain` and `energy` alone. `load`: of all terms together. It must outlive
-  /// this.
-  ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load);
+  /// this, as `norms` must, those of the same law.
+  ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load,
+              ShapeNorms& norms);
   ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
-              const EdgeTractions& tractions);
+              const EdgeTractions& tractions, ShapeNorms& norms);
 
   TriangleSums operator()(int t, LawField<2>& law, const LawOnMesh& laws);
 
  private:
   using Given = JohnsonMercierOperators<1>::Given;
-
-  /// The sums of a shape as squares of norms, once it has come up so often that this pays: a structured mesh
-  /// has a few shapes, another hardly the same twice.
-  struct Shape {
-    int seen = 0;
-    std::shared_ptr<const JohnsonMercierNorms> norms;
-  };
 
   using Inner = Eigen::Matrix<double, 2 * JohnsonMercierRule::kInner, 1>;
 
@@ -135,7 +128,6 @@ class ElasticSums {
   static constexpr int kAhead = 128;
 
   Given given_on(int t, const AffineMap& map) const;
-  std::shared_ptr<const JohnsonMercierNorms> norms_of(int t, const AffineMap& map, LawField<2>& law);
   const Found& by_norms(int t, const std::shared_ptr<const JohnsonMercierNorms>& norms);
   TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
@@ -150,7 +142,7 @@ class ElasticSums {
   const LoadProjection& load_;
   const bool has_load_;
   bool needs_all_ = false;
-  PerShape<Shape> shapes_;
+  ShapeNorms& norms_;
   std::array<Found, kAhead> found_;    ///< that of a triangle by its number's rest
   JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
 };

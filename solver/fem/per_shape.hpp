@@ -38,6 +38,20 @@ class ShapeMemory {
     return alike.front()->value;
   }
 
+  /// The value for a triangle if it is remembered, else null.
+  Value* find(const Eigen::Matrix2d& jacobian) {
+    for (const std::unique_ptr<Remembered>& one : remembered_[place(jacobian)])
+      if (one && is_same(one->jacobian, jacobian)) return &one->value;
+    return nullptr;
+  }
+
+  template <typename Predicate>
+  void forget_if(const Predicate& is_to_go) {
+    for (auto& alike : remembered_)
+      for (std::unique_ptr<Remembered>& one : alike)
+        if (one && is_to_go(one->value)) one.reset();
+  }
+
  private:
   struct Remembered {
     Eigen::Matrix2d jacobian;
@@ -75,7 +89,7 @@ class ShapeMemory {
     return mixed >> (64 - kBits);
   }
 
-  const double digits_per_length_;
+  double digits_per_length_;
   std::array<std::array<std::unique_ptr<Remembered>, kAlike>, 1 << kBits> remembered_;
 };
 

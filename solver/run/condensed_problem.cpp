@@ -132,10 +132,11 @@ Solution CondensedProblem::solve(const Settings& settings, Progress& progress, c
   Solution solution = describe(*discretization_, fields, settings, progress);
   solution.summary.reused = reused_;
   const auto bound = [&] {
-    Certificate certificate = certify(*discretization_, solution, fields.coupling, progress);
     KeptDuals own(KeptDuals::For::one_solve);
-    enclose_quantities(*this, fields, solution, settings.factorization, certificate, kept ? *kept : own,
-                       progress);
+    KeptDuals& all = kept ? *kept : own;
+    Certificate certificate =
+        certify(*discretization_, solution, fields.coupling, all.norms(*this), progress);
+    enclose_quantities(*this, fields, solution, settings.factorization, certificate, all, progress);
     return certificate;
   };
   add_bound(discretization_->problem, bound, solution, progress);

@@ -6,6 +6,7 @@ void KeptDuals::clear() {
   duals_.clear();
   last_.reset();
   pulls_.clear();
+  norms_ = {};
   operator_.reset();
   used_ = 0;
 }
@@ -15,6 +16,11 @@ void KeptDuals::begin_anew_unless(const CondensedProblem& base) {
   if (operator_ == base.used_operator()) return;
   clear();
   operator_ = base.used_operator();
+}
+
+ShapeNorms& KeptDuals::norms(const CondensedProblem& base) {
+  begin_anew_unless(base);
+  return norms_;
 }
 
 CondensedDual& KeptDuals::dual(const CondensedProblem& base, std::size_t i, Progress& progress) {

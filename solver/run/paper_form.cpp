@@ -34,8 +34,9 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
   const Fields fields = condensed.find(ActiveSet{}, within);
   const Settings exactly{ActiveSet{}, std::nullopt};
   const Solution discrete = describe(condensed.discretization(), fields, exactly, within);
-  Certificate certificate = certify(condensed.discretization(), discrete, fields.coupling, within);
   KeptDuals duals(KeptDuals::For::one_solve);
+  Certificate certificate =
+      certify(condensed.discretization(), discrete, fields.coupling, duals.norms(condensed), within);
   enclose_quantities(condensed, fields, discrete, by, certificate, duals, within);
   move_to(iterate.stress, condensed.discretization(), discrete, certificate, within);
   return certificate;

@@ -138,7 +138,7 @@ class Encloser {
               kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
         base_(discrete(), solution, std::move(*certificate.pair), load_remainders(discrete(), progress),
               laws_, progress),
-        enclosure_(base_, laws_, progress),
+        enclosure_(base_, laws_, kept.norms(condensed), progress),
         size_(norm_of(solution.stress, discrete())) {}
 
   /// Of quantity i.

@@ -6,6 +6,7 @@
 
 #include "certify/admissible_pair.hpp"
 #include "certify/displacement/relaxation.hpp"
+#include "certify/elasticity/shape_norms.hpp"
 #include "certify/membrane/stream_function_minimization.hpp"
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
@@ -81,8 +82,10 @@ class CertificateFields {
     solution_ =
         describe(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
                  {ActiveSet{}, std::nullopt}, progress_);
+    ShapeNorms norms;
     add_bound(
-        problem, [&] { return certify(discretization_, solution_, x, progress_); }, solution_, progress_);
+        problem, [&] { return certify(discretization_, solution_, x, norms, progress_); }, solution_,
+        progress_);
     const Eigen::VectorXd clearance = discretization_.clearance.clearance(found.clearance);
     pair_.emplace(AdmissiblePair{{discretization_, solution_, x, progress_},
                                  {discretization_, solution_.stress, clearance}});

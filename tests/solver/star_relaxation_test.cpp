@@ -115,7 +115,8 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
 /// ½ ‖ε(v)‖²_E − (f, v), with what v is inside the macro-elements.
 double energy(const SolvedProblem& solved, const AdmissibleDisplacement& v, const EdgeTractions& tractions) {
   const LawOnMesh laws(solved.problem.material, solved.solution.mesh, 1e-8, solved.progress);
-  ElasticSums sums(solved.discretization, solved.solution, v, tractions);
+  ShapeNorms norms;
+  ElasticSums sums(solved.discretization, solved.solution, v, tractions, norms);
   LawField<2> law(solved.problem.material);
   double sum = 0;
   for (int t = 0; t < solved.discretization.triangles(); ++t) sum += sums(t, law, laws).energy;

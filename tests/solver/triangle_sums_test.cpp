@@ -357,13 +357,15 @@ class ElasticFields {
   TriangleSums said(int t, double tolerance) const {
     LawField<2> law(made_.problem.material);
     const LawOnMesh laws(made_.problem.material, mesh(), tolerance, made_.progress);
-    return ElasticSums(made_.discretization, made_.solution, v_, tractions_)(t, law, laws);
+    ShapeNorms norms;
+    return ElasticSums(made_.discretization, made_.solution, v_, tractions_, norms)(t, law, laws);
   }
 
   std::vector<TriangleSums> said_of_all(double tolerance) const {
     LawField<2> law(made_.problem.material);
     const LawOnMesh laws(made_.problem.material, mesh(), tolerance, made_.progress);
-    ElasticSums sums(made_.discretization, made_.solution, v_, tractions_);
+    ShapeNorms norms;
+    ElasticSums sums(made_.discretization, made_.solution, v_, tractions_, norms);
     std::vector<TriangleSums> all;
     for (int t = 0; t < triangles(); ++t) all.push_back(sums(t, law, laws));
     return all;

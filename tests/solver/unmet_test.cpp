@@ -5,6 +5,7 @@
 #include "certify/certificate.hpp"
 #include "certify/data/carried_loads.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
+#include "certify/elasticity/shape_norms.hpp"
 #include "no_pressure.hpp"
 #include "problems/elasticity.hpp"
 #include "solved_problem.hpp"
@@ -73,7 +74,9 @@ TEST(Unmet, IsAStressThatIsNotInEquilibrium) {
       SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
       made.solution.summary.residuals.equilibrium = residual;
       const Eigen::VectorXd coupling = Eigen::VectorXd::Zero(made.discretization.traces.unknowns());
-      const ErrorBound bound = certify(made.discretization, made.solution, coupling, made.progress).bound;
+      ShapeNorms norms;
+      const ErrorBound bound =
+          certify(made.discretization, made.solution, coupling, norms, made.progress).bound;
       ASSERT_EQ(bound.unmet.size(), residual > 1e-9 ? 1u : 0u);
       EXPECT_EQ(bound.guaranteed, bound.unmet.empty());
       if (!bound.guaranteed) {

@@ -10,9 +10,6 @@
 namespace signorini {
 namespace {
 
-/// A shape that has come up so often is worth its operators.
-constexpr int kOften = 100;
-
 /// Stresses are of degree 3.
 int degree_of_fields(bool lifted) {
   return std::max(3, lifted ? Lift::kDegreeInside - 1 : 1);
@@ -21,17 +18,16 @@ int degree_of_fields(bool lifted) {
 }  // namespace
 
 ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
-                         const AdmissibleDisplacement& v, const EdgeTractions& tractions)
-    : ElasticSums(discrete, {{{1, discrete, solution.stress, v}, tractions}}, discrete.body) {
+                         const AdmissibleDisplacement& v, const EdgeTractions& tractions, ShapeNorms& norms)
+    : ElasticSums(discrete, {{{1, discrete, solution.stress, v}, tractions}}, discrete.body, norms) {
   needs_all_ = true;
 }
 
-ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load)
-    : discrete_(discrete),
-      terms_(std::move(terms)),
-      load_(load),
-      has_load_(load.is_any()),
-      shapes_(discrete) {}
+ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load,
+                         ShapeNorms& norms)
+    : discrete_(discrete), terms_(std::move(terms)), load_(load), has_load_(load.is_any()), norms_(norms) {
+  norms_.look_over(discrete);
+}
 
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
   Given sum{JohnsonMercierData::Zero(),
@@ -43,16 +39,6 @@ ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
     sum.stress += term.factor * term.stress.col(t);
   }
   return sum;
-}
-
-/// The operators of the triangle's shape, or null.
-std::shared_ptr<const JohnsonMercierNorms> ElasticSums::norms_of(int t, const AffineMap& map,
-                                                                 LawField<2>& law) {
-  Shape& shape = shapes_(t, [] { return Shape(); });
-  if (++shape.seen == kOften)
-    shape.norms = std::make_shared<const JohnsonMercierNorms>(johnson_mercier_rule(discrete_.spaces(), 6),
-                                                              map, SymmetricLaw(law(map({0, 0})).compliance));
-  return shape.norms;
 }
 
 /// The strains of what is lifted into the triangle.
@@ -115,7 +101,7 @@ const ElasticSums::Found& ElasticSums::by_norms(int t,
   std::vector<int> alike;
   const int end = std::min(t + kAhead, discrete_.triangles());
   for (int other = t; other < end; ++other)
-    if (!is_lifted(terms_, other) && shapes_(other, [] { return Shape(); }).norms == norms)
+    if (!is_lifted(terms_, other) && norms_.made(AffineMap(discrete_.mesh.corners(other))) == norms)
       alike.push_back(other);
   const auto count = static_cast<Eigen::Index>(alike.size());
   Eigen::MatrixXd z(norms->gap.cols(), count);
@@ -188,7 +174,7 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
       pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
   Inner inner = Inner::Zero();
   TriangleSums sums;
-  if (const auto norms = lifted || !constant_law ? nullptr : norms_of(t, map, law)) {
+  if (const auto norms = lifted || !constant_law ? nullptr : norms_(map, discrete_.spaces(), law)) {
     const Found& found = by_norms(t, norms);
     sums = found.sums;
     inner = found.inner;

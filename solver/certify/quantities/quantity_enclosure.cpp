@@ -46,7 +46,12 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& term
       all.push_back({pair, *own.pair.tractions});
   }
   const Discretization& discrete = base_.discrete;
-  FieldSums fields(discrete, std::move(all), load);
+  FieldSums fields = [&] {
+    if constexpr (D == 1)
+      return FieldSums(discrete, std::move(all), load);
+    else
+      return FieldSums(discrete, std::move(all), load, norms_);
+  }();
   LawField<D> law(discrete.problem.material);
   Sums sums{Eigen::VectorXd(discrete.triangles())};
   for (int t = 0; t < discrete.triangles(); ++t) {
@@ -67,9 +72,11 @@ QuantityEnclosure::Sums QuantityEnclosure::sums(const std::vector<Term>& terms,
   return base_.discrete.spaces().components == 1 ? sums_of<1>(terms, load) : sums_of<2>(terms, load);
 }
 
-QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, Progress& progress)
+QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, ShapeNorms& norms,
+                                     Progress& progress)
     : base_(base),
       laws_(laws),
+      norms_(norms),
       progress_(progress),
       everywhere_(base.discrete.triangles(), 0),
       own_(sums({{1, base}}, base.discrete.body)),

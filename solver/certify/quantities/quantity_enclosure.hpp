@@ -6,11 +6,14 @@
 
 namespace signorini {
 
+class ShapeNorms;
+
 /// Encloses quantities of a solution by the solutions of their dual problems: THEORY.md, Theorem 4.
 class QuantityEnclosure {
  public:
   /// All must outlive it.
-  QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, Progress& progress);
+  QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, ShapeNorms& norms,
+                    Progress& progress);
 
   /// R of THEORY.md, Theorem 1: twice a bound of ‖σ − ½ (σ* + E ε(v))‖_C.
   double radius() const { return radius_; }
@@ -64,6 +67,7 @@ class QuantityEnclosure {
 
   const CertifiedSolution& base_;
   const LawOnMesh& laws_;
+  ShapeNorms& norms_;
   Progress& progress_;
   const std::vector<int> everywhere_;  ///< all triangles have an owner
   Sums own_;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "certify/elasticity/johnson_mercier_operators.hpp"
+#include "fem/per_shape.hpp"
+
+namespace signorini {
+
+/// The operators of the shapes that a mesh has often, under one constant law: for all sums over it, of a
+/// solve and of the entries of its sweep. A structured mesh has a few shapes, another hardly the same twice.
+///
+/// Which shapes those are depends on the mesh alone, and on nothing that was summed up before: sums are the
+/// same to the last bit in whatever order entries are solved.
+class ShapeNorms {
+ public:
+  /// Looks for the shapes that come up often, the first time.
+  void look_over(const Discretization& discrete);
+
+  /// Those of a triangle's shape, made if need be; null if few triangles have it.
+  std::shared_ptr<const JohnsonMercierNorms> operator()(const AffineMap& map, const Spaces& spaces,
+                                                        LawField<2>& law);
+  /// The same if they are made.
+  std::shared_ptr<const JohnsonMercierNorms> made(const AffineMap& map);
+
+ private:
+  struct Shape {
+    int triangles = 0;
+    std::shared_ptr<const JohnsonMercierNorms> norms;
+  };
+
+  std::optional<ShapeMemory<Shape>> shapes_;  ///< those that come up often
+};
+
+}  // namespace signorini
