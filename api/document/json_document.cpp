@@ -85,6 +85,33 @@ class Skimmer : public nlohmann::json_sax<json> {
   std::size_t depth_ = 0;
 };
 
+/// Whether a place in a text is in a string, byte after byte.
+class PlaceInText {
+ public:
+  void pass(char byte) {
+    if (!in_string_) {
+      in_string_ = byte == '"';
+      bytes_ = 0;
+      return;
+    }
+    ++bytes_;
+    if (is_escaped_)
+      is_escaped_ = false;
+    else if (byte == '"')
+      in_string_ = false;
+    else
+      is_escaped_ = byte == '\\';
+  }
+
+  bool is_in_string() const { return in_string_; }
+  /// Since it began.
+  std::size_t bytes_of_string() const { return bytes_; }
+
+ private:
+  bool in_string_ = false, is_escaped_ = false;
+  std::size_t bytes_ = 0;
+};
+
 /// Builds the document from the parser's events, and ends the parse at what this service does not take.
 /// Nesting and numbers are limited while parsing: a document that is too large never comes into being.
 class Builder : public nlohmann::json_sax<json> {
@@ -94,8 +121,9 @@ class Builder : public nlohmann::json_sax<json> {
   json take() { return std::move(root_); }
 
   /// To be told of each byte that the parser takes: it keeps a string until that ends.
-  void read_byte() {
-    if (++bytes_since_value_ > limits::texts && !is_in_domain()) throw too_much_text();
+  void read(char byte) {
+    place_.pass(byte);
+    if (place_.bytes_of_string() > limits::texts && !is_in_domain()) throw too_much_text();
   }
 
   bool null() override { return add(nullptr); }
@@ -120,7 +148,6 @@ class Builder : public nlohmann::json_sax<json> {
       throw MalformedJson("the member " + in_quotes(name) + " at " + in_quotes(pointer_to(pointer(), name)) +
                           " is there twice; give it once");
     names_.back() = std::move(name);
-    bytes_since_value_ = 0;
     return true;
   }
 
@@ -161,7 +188,6 @@ class Builder : public nlohmann::json_sax<json> {
   /// Puts the value where the document has come to. Containers do not move while they are open, for
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
-    bytes_since_value_ = 0;
     if (++values_ > limits::values) throw too_many(limits::values, "values");
     if (!is_in_domain() && ++values_beside_domain_ > limits::values_beside_domain)
       throw too_many(limits::values_beside_domain, "values outside the domain");
@@ -190,7 +216,8 @@ class Builder : public nlohmann::json_sax<json> {
   std::string_view text_;
   Observer* const observer_;
   json root_;
-  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0, texts_ = 0, bytes_since_value_ = 0;
+  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0, texts_ = 0;
+  PlaceInText place_;
   std::vector<json*> open_;
   std::vector<std::string> names_;  ///< the member being read of each open object
 };
@@ -208,7 +235,7 @@ class ReadByte {
 
   char operator*() const { return *at_; }
   ReadByte& operator++() {
-    builder_->read_byte();
+    builder_->read(*at_);
     ++at_;
     return *this;
   }
@@ -226,17 +253,14 @@ class Strings {
 
   /// To be asked from place to place.
   bool hold(std::size_t byte) {
-    for (; at_ < byte; ++at_) {
-      if (text_[at_] == '"') within_ = !within_;
-      if (within_ && text_[at_] == '\\') ++at_;
-    }
-    return within_;
+    for (; at_ < byte; ++at_) place_.pass(text_[at_]);
+    return place_.is_in_string();
   }
 
  private:
   std::string_view text_;
   std::size_t at_ = 0;
-  bool within_ = false;
+  PlaceInText place_;
 };
 
 /// The library would keep all digits of a number, and copy them into what it says of it. A look at each so

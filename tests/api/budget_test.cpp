@@ -164,7 +164,7 @@ TEST(Budget, OnlyADomainHasMillionsOfValues) {
   EXPECT_EQ(found_soon(entries), "malformed");
 }
 
-/// It is not kept until its end is found. Blanks count as text, too.
+/// Of no other is the end looked for. Blanks between values are no text.
 TEST(Budget, OnlyADomainHasLongTexts) {
   json titled = square();
   titled["title"] = std::string(15'000'000, 't');
@@ -172,7 +172,7 @@ TEST(Budget, OnlyADomainHasLongTexts) {
   json named = square();
   named[std::string(15'000'000, 'n')] = 1;
   EXPECT_EQ(found_soon(named), "malformed");
-  EXPECT_THROW(parse_request("{" + std::string(15'000'000, ' ') + "}"), MalformedJson);
+  EXPECT_EQ(parse_json("{" + std::string(15'000'000, ' ') + "}"), json::object());
   EXPECT_EQ(found_soon({{"domain", {{"type", "gmsh"}, {"msh", std::string(2'000'000, 'm')}}}}), "/model");
 }
 
