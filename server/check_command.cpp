@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "server/exit_code.hpp"
-#include "server/jobs/repair.hpp"
+#include "server/jobs/sqlite/repair.hpp"
 #include "server/jobs/store.hpp"
 
 namespace signorini::server {

@@ -16,7 +16,7 @@
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/memory_store.hpp"
 #include "server/jobs/postgres/store.hpp"
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 #include "server/metrics/metrics.hpp"
 #include "server/signals.hpp"
 

@@ -15,7 +15,7 @@
 #include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "example_problems.hpp"
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 #include "temporary_directory.hpp"
 
 namespace signorini::server::crash_test {

@@ -8,7 +8,7 @@
 #include "child_process.hpp"
 #include "example_problems.hpp"
 #include "faulty_disk.hpp"
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 #include "temporary_directory.hpp"
 
 namespace signorini::server::durable_service_test {

@@ -18,7 +18,7 @@
 #include "raw_client.hpp"
 #include "server/handlers/shared_results.hpp"
 #include "server/http/error.hpp"
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 #include "store_jobs.hpp"
 
 namespace signorini::server::long_replies_test {

@@ -9,7 +9,7 @@
 #include "postgres_server.hpp"
 #include "server/jobs/memory_store.hpp"
 #include "server/jobs/postgres/store.hpp"
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 
 namespace signorini::server {
 

@@ -1,6 +1,6 @@
 // What the store on disk does beyond store_test.cpp: it survives.
 
-#include "server/jobs/sqlite_store.hpp"
+#include "server/jobs/sqlite/store.hpp"
 
 #include "running_service.hpp"
 
@@ -12,7 +12,7 @@
 #include "../problems/sanitized.hpp"
 #include "child_process.hpp"
 #include "faulty_disk.hpp"
-#include "server/jobs/schema.hpp"
+#include "server/jobs/sqlite/schema.hpp"
 #include "server/jobs/stored_form.hpp"
 #include "store_jobs.hpp"
 #include "temporary_directory.hpp"

@@ -1,4 +1,4 @@
-#include "server/jobs/commit_queue.hpp"
+#include "server/jobs/sqlite/commit_queue.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "server/jobs/disk_reserve.hpp"
+#include "server/jobs/sqlite/disk_reserve.hpp"
 
 #include <system_error>
 

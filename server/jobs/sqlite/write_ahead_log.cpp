@@ -1,9 +1,9 @@
-#include "server/jobs/write_ahead_log.hpp"
+#include "server/jobs/sqlite/write_ahead_log.hpp"
 
 #include <array>
 #include <fstream>
 
-#include "server/jobs/byte_order.hpp"
+#include "server/jobs/sqlite/byte_order.hpp"
 
 namespace signorini::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/database.hpp"
+#include "server/jobs/sqlite/database.hpp"
 
 struct sqlite3_blob;
 

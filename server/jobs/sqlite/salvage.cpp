@@ -1,4 +1,4 @@
-#include "server/jobs/salvage.hpp"
+#include "server/jobs/sqlite/salvage.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,8 +14,8 @@
 #include <string_view>
 #include <vector>
 
-#include "server/jobs/byte_order.hpp"
-#include "server/jobs/write_ahead_log.hpp"
+#include "server/jobs/sqlite/byte_order.hpp"
+#include "server/jobs/sqlite/write_ahead_log.hpp"
 
 namespace signorini::server {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/data_dir.hpp"
+#include "server/jobs/sqlite/data_dir.hpp"
 
 namespace signorini::server {
 

@@ -1,4 +1,4 @@
-#include "server/jobs/repair.hpp"
+#include "server/jobs/sqlite/repair.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -7,14 +7,14 @@
 
 #include <sqlite3.h>
 
-#include "server/jobs/job_rows.hpp"
-#include "server/jobs/result_bytes.hpp"
 #include "server/jobs/retention_clock.hpp"
-#include "server/jobs/salvage.hpp"
-#include "server/jobs/schema.hpp"
+#include "server/jobs/sqlite/job_rows.hpp"
+#include "server/jobs/sqlite/result_bytes.hpp"
+#include "server/jobs/sqlite/salvage.hpp"
+#include "server/jobs/sqlite/schema.hpp"
+#include "server/jobs/sqlite/write_ahead_log.hpp"
 #include "server/jobs/store.hpp"
 #include "server/jobs/stored_form.hpp"
-#include "server/jobs/write_ahead_log.hpp"
 
 namespace signorini::server {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/jobs/batch.hpp"
-#include "server/jobs/database.hpp"
+#include "server/jobs/sqlite/database.hpp"
 
 namespace signorini::server {
 

@@ -1,4 +1,4 @@
-#include "server/jobs/job_rows.hpp"
+#include "server/jobs/sqlite/job_rows.hpp"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "server/jobs/result_bytes.hpp"
+#include "server/jobs/sqlite/result_bytes.hpp"
 
 #include <algorithm>
 

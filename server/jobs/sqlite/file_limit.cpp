@@ -1,4 +1,4 @@
-#include "server/jobs/file_limit.hpp"
+#include "server/jobs/sqlite/file_limit.hpp"
 
 #include <system_error>
 

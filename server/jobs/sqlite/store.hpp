@@ -4,11 +4,11 @@
 #include <mutex>
 #include <string>
 
-#include "server/jobs/commit_queue.hpp"
-#include "server/jobs/data_dir.hpp"
-#include "server/jobs/database.hpp"
-#include "server/jobs/disk_reserve.hpp"
 #include "server/jobs/retention_clock.hpp"
+#include "server/jobs/sqlite/commit_queue.hpp"
+#include "server/jobs/sqlite/data_dir.hpp"
+#include "server/jobs/sqlite/database.hpp"
+#include "server/jobs/sqlite/disk_reserve.hpp"
 #include "server/jobs/store.hpp"
 
 namespace signorini::server {

@@ -1,4 +1,4 @@
-#include "server/jobs/data_dir.hpp"
+#include "server/jobs/sqlite/data_dir.hpp"
 
 #include <cerrno>
 #include <system_error>

@@ -1,4 +1,4 @@
-#include "server/jobs/schema.hpp"
+#include "server/jobs/sqlite/schema.hpp"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "server/jobs/database.hpp"
+#include "server/jobs/sqlite/database.hpp"
 
 #include <sqlite3.h>
 #include <zlib.h>
