@@ -342,6 +342,30 @@ TEST(QuantityOfAHat, IsEnclosedWithinAnEdge) {
   }
 }
 
+/// u = −2 y presses with p = 2. Where a kink lies among the halves of an edge, both parts beside it are
+/// linear.
+TEST(QuantityOfAHat, HasItsPeakAnywhereWithinAnEdge) {
+  for (const Scheme scheme : {Scheme::nonconforming, Scheme::conforming})
+    for (const int n : {1, 3, 4})
+      for (const double peak : {0.5, 0.25, 0.375, 0.0625, 0.3, 127. / 256, 1. / 3}) {
+        Problem problem = problems::paper(scheme, n);
+        problem.body = VectorField(Field(0));
+        for (const char* side : {"left", "right", "top"})
+          problem.boundary[side] = Fixed{VectorField(formula("-2*y"))};
+        problem.boundary["bottom"] = Contact{Field(0)};
+        const std::string at = digits(peak);
+        problem.quantities = {
+            pressure_force("bottom", formula("min(x / " + at + ", (1 - x) / (1 - " + at + "))")),
+            pressure_force("bottom",
+                           formula("x < " + at + " ? x / " + at + " : (1 - x) / (1 - " + at + ")"))};
+        for (const EnclosedQuantity& force : enclosed(problem)) {
+          EXPECT_TRUE(force.guaranteed) << n << ' ' << peak;
+          EXPECT_LE(force.lower, 1 + 1e-12) << n << ' ' << peak;
+          EXPECT_GE(force.upper, 1 - 1e-12) << n << ' ' << peak;
+        }
+      }
+}
+
 /// Rounding tells what is nothing, and nothing else.
 TEST(QuantityOfABody, HasTheSameWidthInAnyUnits) {
   const auto width = [](double unit) {
