@@ -57,7 +57,8 @@ struct Column {
 
 std::vector<Column> columns_of(const std::vector<Iteration>& history) {
   std::vector<Column> columns;
-  for_each_history_column(history, [&](std::string_view name, const auto& entry) {
+  for_each_history_column(history.empty() ? nullptr : &history.front(), [&](std::string_view name,
+                                                                            const auto& entry) {
     columns.push_back({name, [entry](PieceWriter& out, const Iteration& i) { put_number(out, entry(i)); }});
   });
   return columns;

@@ -5,11 +5,11 @@
 namespace signorini::api {
 
 /// Calls `column(name, entry)` for every column of a history, in order; `entry(iteration)` is the number
-/// that stands in it.
+/// that stands in it. `first`: the first iteration, or null if there is none.
 template <typename Column>
-void for_each_history_column(const std::vector<Iteration>& history, const Column& column) {
+void for_each_history_column(const Iteration* first, const Column& column) {
   column("iteration", [](const Iteration& i) { return i.number; });
-  const bool paper_form = !history.empty() && history.front().displacement_change;
+  const bool paper_form = first != nullptr && first->displacement_change;
   if (paper_form)
     column("displacement_change", [](const Iteration& i) { return i.displacement_change.value(); });
   column("clearance_change", [](const Iteration& i) { return i.clearance_change; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "api/document/document_writer.hpp"
@@ -27,6 +28,9 @@ void write_quantities(DocumentWriter& out, const std::vector<EnclosedQuantity>& 
 void write_sweep(DocumentWriter& out, const std::vector<SweepEntry>& sweep, bool with_contact);
 /// The rows of study_columns.hpp, and the fitted rates of each scheme.
 void write_study(DocumentWriter& out, const std::vector<StudyRow>& rows);
+/// Iterations by their places; valid until the next one is asked for.
+using HistoryRow = std::function<const Iteration&(std::size_t)>;
+void write_history(DocumentWriter& out, std::size_t rows, const HistoryRow& row);
 void write_history(DocumentWriter& out, const std::vector<Iteration>& history);
 /// One row of it.
 void write_iteration(DocumentWriter& out, const Iteration& iteration);

@@ -53,6 +53,17 @@ void write_links(DocumentWriter& out, const Job& job) {
       .end_object();
 }
 
+/// As far as it has come when this begins; many may read it, so that none has a copy of the whole.
+void write_growing_history(DocumentWriter& out, const LiveSolve& live) {
+  constexpr std::size_t most = 1024;
+  std::vector<Iteration> block = live.history_after(0, most);
+  std::size_t first = 0;
+  api::write_history(out, live.iterations(), [&](std::size_t i) -> const Iteration& {
+    if (i < first || i >= first + block.size()) block = live.history_after(first = i, most);
+    return block[i - first];
+  });
+}
+
 std::optional<std::string> link_to_next(const JobPage& page, const ListQuery& query) {
   if (!page.next) return std::nullopt;
   std::string link = "/v1/solves?limit=" + std::to_string(query.limit);
@@ -120,9 +131,15 @@ void write_list(DocumentWriter& out, const JobPage& page, const ListQuery& query
   out.end_object().end_object();
 }
 
-void write_history_so_far(DocumentWriter& out, JobStatus status, const std::vector<Iteration>& history) {
-  out.begin_object().member("status", name(status));
-  api::write_history(out.key("history"), history);
+void write_history_so_far(DocumentWriter& out, const JobWithResult& about, const LiveSolve* live) {
+  out.begin_object().member("status", name(about.job.status)).key("history");
+  if (about.result.history) {
+    api::write_history(out, *about.result.history);
+  } else if (live != nullptr) {
+    write_growing_history(out, *live);
+  } else {
+    api::write_history(out, {});
+  }
   out.end_object();
 }
 

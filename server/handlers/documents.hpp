@@ -3,6 +3,7 @@
 #include <string>
 
 #include "api/document/document_writer.hpp"
+#include "server/handlers/find_job.hpp"
 #include "server/jobs/scheduler.hpp"
 #include "server/jobs/store.hpp"
 
@@ -24,7 +25,8 @@ void write_status(api::DocumentWriter& out, const Job& job, const LiveSolve* liv
 void write_list(api::DocumentWriter& out, const JobPage& page, const ListQuery& query,
                 const LiveSolves& lives);
 
-/// The residual history of a job with this status, so far.
-void write_history_so_far(api::DocumentWriter& out, JobStatus status, const std::vector<Iteration>& history);
+/// The residual history of a job, so far: of what it has as a result, else of its solve while it runs, if
+/// there is one.
+void write_history_so_far(api::DocumentWriter& out, const JobWithResult& about, const LiveSolve* live);
 
 }  // namespace signorini::server

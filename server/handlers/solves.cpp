@@ -144,14 +144,10 @@ Response get_history(Service& service, const Request& request) {
   Job job = find_job(service, request);
   JobWithResult iterated =
       has_ended(job.status) ? with_result(service, std::move(job)) : JobWithResult{std::move(job), {}};
-  if (!iterated.result.history && live) {
-    iterated.result.history = std::make_shared<const std::vector<Iteration>>(live->history());
-  }
-  return job_response(
-      service, request, 200, std::move(iterated), [](api::DocumentWriter& out, const JobWithResult& about) {
-        const auto& history = about.result.history;
-        write_history_so_far(out, about.job.status, history ? *history : std::vector<Iteration>());
-      });
+  return job_response(service, request, 200, std::move(iterated),
+                      [live](api::DocumentWriter& out, const JobWithResult& about) {
+                        write_history_so_far(out, about, live.get());
+                      });
 }
 
 Response delete_solve(Service& service, const Request& request) {

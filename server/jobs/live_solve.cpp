@@ -67,6 +67,11 @@ Progress LiveSolve::progress() const {
   return progress;
 }
 
+std::size_t LiveSolve::iterations() const {
+  const std::lock_guard lock(mutex_);
+  return history_.size();
+}
+
 std::vector<Iteration> LiveSolve::history() const {
   const std::lock_guard lock(mutex_);
   return history_;

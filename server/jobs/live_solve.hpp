@@ -49,6 +49,7 @@ class LiveSolve : public Observer {
   void follow(const Progress& progress, const std::vector<Iteration>& iterations);
 
   Progress progress() const;
+  std::size_t iterations() const;
   std::vector<Iteration> history() const;
   /// At most so many iterations after the first ones.
   std::vector<Iteration> history_after(std::size_t first, std::size_t most) const;

@@ -218,6 +218,39 @@ class SlowReaders : public ServiceTest {
   }
 };
 
+/// Each reader of a history had a copy of it, of fifty megabytes here.
+TEST_F(SlowReaders, ShareOneHistory) {
+  client_.set_read_timeout(120);
+  const std::string id = json::parse(post("huge", "?wait=100&fields=summary")->body).at("id");
+  const std::size_t before = figures_of(getpid()).memory;
+  std::vector<RawClient> deaf;
+  for (int i = 0; i < 12; ++i) deaf.push_back(deaf_client(service_.port(), "/v1/solves/" + id + "/history"));
+  std::this_thread::sleep_for(sanitized ? 8s : 2s);
+  if (!sanitized) {
+    EXPECT_LT(figures_of(getpid()).memory, before + 250 * megabyte);
+  }
+}
+
+/// Events of a solve that has ended are made of its result, too. Eight who waited for one held all who look.
+TEST_F(SlowReaders, HinderNobodyWhoLooksWhileOthersWaitForEvents) {
+  client_.set_read_timeout(120);
+  std::vector<std::string> ids;
+  for (int i = 0; i < 2; ++i)
+    ids.push_back(json::parse(post("huge", "?wait=100&fields=summary")->body).at("id"));
+  std::vector<RawClient> clients;
+  clients.push_back(deaf_client(service_.port(), "/v1/solves/" + ids[0] + "/result"));
+  std::this_thread::sleep_for(500ms);
+  for (int i = 0; i < 16; ++i) {
+    clients.emplace_back(service_.port());
+    clients.back().send("GET /v1/solves/" + ids[1] + "/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  std::this_thread::sleep_for(200ms);
+  const auto begin = Clock::now();
+  EXPECT_EQ(get("/v1/solves")->status, 200);
+  EXPECT_EQ(get("/v1/solves/" + ids[1])->status, 200);
+  EXPECT_LT(Clock::now() - begin, 2s);
+}
+
 /// They give back what they hold when somebody else wants a result for which there is no memory.
 TEST_F(SlowReaders, AreLeftWhereTheyStandInTheWay) {
   client_.set_read_timeout(120);
