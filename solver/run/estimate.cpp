@@ -238,7 +238,8 @@ Counts Estimation::count() {
   if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
-  const std::optional<Coarser> coarse = is_large ? coarser_mesh(sizes.triangles) : std::nullopt;
+  const std::optional<Coarser> coarse =
+      is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;
   // Few, or twice as many where no coarser one of few shows the shape.
   const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
