@@ -128,7 +128,7 @@ class ElasticSums {
   static constexpr int kAhead = 128;
 
   Given given_on(int t, const AffineMap& map) const;
-  const Found& by_norms(int t, const std::shared_ptr<const JohnsonMercierNorms>& norms);
+  const Found& by_norms(int t, const JohnsonMercierNorms& norms);
   TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
                          double error_of_whole, LawField<2>& law, Inner& inner) const;
   std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,

@@ -94,17 +94,16 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
 
 /// Of the triangle and all others of its shape that come soon after: many columns in one product take a
 /// fraction of the time.
-const ElasticSums::Found& ElasticSums::by_norms(int t,
-                                                const std::shared_ptr<const JohnsonMercierNorms>& norms) {
+const ElasticSums::Found& ElasticSums::by_norms(int t, const JohnsonMercierNorms& norms) {
   const auto place = [this](int triangle) -> Found& { return found_[triangle % kAhead]; };
   if (place(t).triangle == t) return place(t);
   std::vector<int> alike;
   const int end = std::min(t + kAhead, discrete_.triangles());
   for (int other = t; other < end; ++other)
-    if (!is_lifted(terms_, other) && norms_.made(AffineMap(discrete_.mesh.corners(other))) == norms)
+    if (!is_lifted(terms_, other) && norms_.made(AffineMap(discrete_.mesh.corners(other))) == &norms)
       alike.push_back(other);
   const auto count = static_cast<Eigen::Index>(alike.size());
-  Eigen::MatrixXd z(norms->gap.cols(), count);
+  Eigen::MatrixXd z(norms.gap.cols(), count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Given given = given_on(alike[i], AffineMap(discrete_.mesh.corners(alike[i])));
     z.col(i) << given.data, given.stress, given.displacement;
@@ -115,19 +114,19 @@ const ElasticSums::Found& ElasticSums::by_norms(int t,
                 factor.data(), rows, part.data(), rows);
     return part.colwise().squaredNorm();
   };
-  const Eigen::Index stresses = norms->correction.cols(), of_scheme = norms->stress.cols();
-  const Eigen::VectorXd gap = squares(norms->gap, z), strain = squares(norms->strain, z) / 2;
+  const Eigen::Index stresses = norms.correction.cols(), of_scheme = norms.stress.cols();
+  const Eigen::VectorXd gap = squares(norms.gap, z), strain = squares(norms.strain, z) / 2;
   Eigen::VectorXd direct_gap, correction, skew, stress;
   if (needs_all_) {
-    direct_gap = squares(norms->direct_gap, z);
-    correction = squares(norms->correction, z.topRows(stresses));
-    skew = squares(norms->skew, z.middleRows(stresses - of_scheme, of_scheme));
-    stress = squares(norms->stress, z.middleRows(stresses - of_scheme, of_scheme));
+    direct_gap = squares(norms.direct_gap, z);
+    correction = squares(norms.correction, z.topRows(stresses));
+    skew = squares(norms.skew, z.middleRows(stresses - of_scheme, of_scheme));
+    stress = squares(norms.stress, z.middleRows(stresses - of_scheme, of_scheme));
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     Found& found = place(alike[i]);
     found.triangle = alike[i];
-    if (has_load_) found.inner = norms->inner * z.col(i);
+    if (has_load_) found.inner = norms.inner * z.col(i);
     TriangleSums& sums = found.sums = {};
     sums.gap = gap[i];
     sums.strain = sums.energy = strain[i];
@@ -174,8 +173,8 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
       pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
   Inner inner = Inner::Zero();
   TriangleSums sums;
-  if (const auto norms = lifted || !constant_law ? nullptr : norms_(map, discrete_.spaces(), law)) {
-    const Found& found = by_norms(t, norms);
+  if (const auto* norms = lifted || !constant_law ? nullptr : norms_(map, discrete_.spaces(), law)) {
+    const Found& found = by_norms(t, *norms);
     sums = found.sums;
     inner = found.inner;
   } else {

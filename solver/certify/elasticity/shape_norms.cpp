@@ -17,19 +17,19 @@ void ShapeNorms::look_over(const Discretization& discrete) {
   shapes_->forget_if([](const Shape& shape) { return shape.triangles < kOften; });
 }
 
-std::shared_ptr<const JohnsonMercierNorms> ShapeNorms::operator()(const AffineMap& map, const Spaces& spaces,
-                                                                  LawField<2>& law) {
-  Shape* const shape = shapes_ ? shapes_->find(map.jacobian) : nullptr;
+const JohnsonMercierNorms* ShapeNorms::operator()(const AffineMap& map, const Spaces& spaces,
+                                                  LawField<2>& law) {
+  Shape* const shape = shape_of(map);
   if (shape == nullptr) return nullptr;
   if (!shape->norms)
-    shape->norms = std::make_shared<const JohnsonMercierNorms>(johnson_mercier_rule(spaces, 6), map,
+    shape->norms = std::make_unique<const JohnsonMercierNorms>(johnson_mercier_rule(spaces, 6), map,
                                                                SymmetricLaw(law(map({0, 0})).compliance));
-  return shape->norms;
+  return shape->norms.get();
 }
 
-std::shared_ptr<const JohnsonMercierNorms> ShapeNorms::made(const AffineMap& map) {
-  const Shape* const shape = shapes_ ? shapes_->find(map.jacobian) : nullptr;
-  return shape != nullptr ? shape->norms : nullptr;
+const JohnsonMercierNorms* ShapeNorms::made(const AffineMap& map) {
+  const Shape* const shape = shape_of(map);
+  return shape != nullptr ? shape->norms.get() : nullptr;
 }
 
 }  // namespace signorini

@@ -19,16 +19,18 @@ class ShapeNorms {
   void look_over(const Discretization& discrete);
 
   /// Those of a triangle's shape, made if need be; null if few triangles have it.
-  std::shared_ptr<const JohnsonMercierNorms> operator()(const AffineMap& map, const Spaces& spaces,
-                                                        LawField<2>& law);
+  const JohnsonMercierNorms* operator()(const AffineMap& map, const Spaces& spaces, LawField<2>& law);
   /// The same if they are made.
-  std::shared_ptr<const JohnsonMercierNorms> made(const AffineMap& map);
+  const JohnsonMercierNorms* made(const AffineMap& map);
 
  private:
   struct Shape {
     int triangles = 0;
-    std::shared_ptr<const JohnsonMercierNorms> norms;
+    std::unique_ptr<const JohnsonMercierNorms> norms;
   };
+
+  /// Null if few triangles have it.
+  Shape* shape_of(const AffineMap& map) { return shapes_ ? shapes_->find(map.jacobian) : nullptr; }
 
   std::optional<ShapeMemory<Shape>> shapes_;  ///< those that come up often
 };
