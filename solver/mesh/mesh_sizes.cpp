@@ -78,11 +78,11 @@ struct Pieces {
 /// The part of an edge, as shares of it, within a circle; none where the second is no larger.
 std::array<double, 2> shares_within(const Segment& edge, const Point& centre, double radius) {
   const Vector way = edge[1] - edge[0];
-  const double square = way.squaredNorm(), middle = (centre - edge[0]).dot(way) / square;
-  const double from_line = (edge[0] + middle * way - centre).norm();
+  const double length = way.norm(), from_line = std::abs(twice_area(edge[0], edge[1], centre)) / length;
   if (from_line >= radius) return {0, 0};
-  const double half = std::sqrt((radius * radius - from_line * from_line) / square);
-  return {std::max(0., middle - half), std::min(1., middle + half)};
+  const double middle = (centre - edge[0]).dot(way) / length;
+  const double half = std::sqrt(radius * radius - from_line * from_line);
+  return {std::max(0., (middle - half) / length), std::min(1., (middle + half) / length)};
 }
 
 /// The edges that a local size makes of one of the boundary, whose edges would be no longer than `longest`:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "fem/clearance_space.hpp"
@@ -174,8 +175,12 @@ void Estimation::cut(const MeshData& data) {
 /// vertices or its narrow places ask for more, whatever the size, it is one with twice as many, or none.
 std::optional<Coarser> Estimation::coarser_mesh(std::int64_t triangles) const {
   constexpr int attempts = 3;
-  double times = longer_for(triangles, few_triangles);
   std::optional<Coarser> larger;
+  // By Euler's formula.
+  const std::size_t holes = std::get<Polygon>(problem_.domain).holes.size();
+  const auto least = std::reduce(chains_.begin(), chains_.end(), 2 * static_cast<std::int64_t>(holes) - 2);
+  if (least > most_of_own_shape) return larger;
+  double times = longer_for(triangles, few_triangles);
   for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
     const MeshRequest request = coarser(problem_.mesh, times);
     const std::int64_t made = (*predicted_)(request).triangles;
@@ -255,7 +260,7 @@ Counts Estimation::count() {
     cut_finer(*mesh, triangles, Shows::itself);
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
-  } else if (coarse && std::min(may_be_made_, may_be_cut_) > 0) {
+  } else if (coarse && may_be_cut_ > 0) {
     cut_coarser(coarse->request, triangles);
   }
   std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
