@@ -6,6 +6,8 @@
 #include <new>
 
 #include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 namespace signorini {
 namespace {
@@ -71,9 +73,22 @@ bool is_too_much(std::size_t more) {
   return true;
 }
 
+/// Large pages for what is large, where the kernel has some: they are fewer to fault in and to give back.
+void ask_for_large_pages(void* memory, std::size_t size) {
+  constexpr std::size_t large = std::size_t{4} << 20;
+  if (size < large) return;
+  static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto first = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t begin = (first + page - 1) / page * page, end = (first + size) / page * page;
+  // Without them it is the same memory.
+  static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
+}
+
 void* counted(void* memory) {
-  account.now += static_cast<std::int64_t>(malloc_usable_size(memory));
+  const std::size_t size = malloc_usable_size(memory);
+  account.now += static_cast<std::int64_t>(size);
   account.peak = std::max(account.peak, account.now);
+  ask_for_large_pages(memory, size);
   return memory;
 }
 

@@ -57,18 +57,22 @@ class FrontElimination {
     for_each_original([this](int piece) { eliminate(piece); });
   }
 
-  /// What the whole leaves, in the order of the trailing unknowns.
+  /// What the whole leaves, in the order of the trailing unknowns. Columns are filled one after the other:
+  /// gigabytes that are touched for the first time come page by page.
   Eigen::MatrixXd complement() {
-    constexpr int whole = 1;
+    constexpr int whole = 1, block = 64;
     const Dissection::Front front = order_.front(whole);
     const int n = front.rest();
     stack(whole).pop(rest_size(front));
     const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
     Eigen::MatrixXd all = unset_square(n);
-    for (int j = 0; j < n; ++j) {
-      pace_.add(static_cast<std::size_t>(n - j));
-      all.col(j).tail(n - j) = lower.col(j).tail(n - j);
-      all.row(j).tail(n - j) = lower.col(j).tail(n - j).transpose();
+    for (int j = 0; j < n; j += block) {
+      const int columns = std::min(block, n - j), below = n - j - columns;
+      pace_.add(static_cast<std::size_t>(n) * columns);
+      for (int i = 0; i < j; i += block)
+        all.block(i, j, block, columns) = lower.block(j, i, columns, block).transpose();
+      all.block(j, j, columns, columns) = lower.block(j, j, columns, columns).selfadjointView<Eigen::Lower>();
+      all.block(j + columns, j, below, columns) = lower.block(j + columns, j, below, columns);
     }
     return all;
   }

@@ -101,7 +101,7 @@ Run solves_again(Problem problem, const Settings& settings) {
   return [=](Observer& observer) { solve(problem, settings, observer, *shelf); };
 }
 
-/// Thirteen problems, each with the seconds in which its phases lie.
+/// Fourteen problems, each with the seconds in which its phases lie.
 std::vector<std::pair<Run, double>> problems_to_cancel() {
   Problem graded = membrane_on(disc(100), MeshRequest(LargestEdge{0.1}), {"side0"});
   graded.mesh.sizes = {{{0, 0}, 0.2, 1e-3}};
@@ -124,6 +124,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
           {solves(graded), 3},
           {solves(refined), 3},
           {solves(strip(6000, 4, Scheme::nonconforming)), 8},
+          {solves(strip(long_tests() ? 10000 : 1000, 1, Scheme::nonconforming)), 8},
           {solves(strip(1500, 4, Scheme::conforming), {ActiveSet{}, {}}), 8},
           {solves(paper, {}, std::vector<Variation>(100, lower)), 3},
           {[study](Observer& observer) {
