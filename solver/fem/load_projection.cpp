@@ -95,8 +95,10 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {
     ProjectedLoad& load = all_[number_of_[rough[i]]];
-    budget.share(rough.size() - i,
-                 [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load); });
+    budget.share(
+        rough.size() - i,
+        [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load); },
+        kCellsOfRoughLoads);
   }
 }
 

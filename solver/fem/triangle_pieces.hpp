@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <limits>
 #include <span>
 
 #include <Eigen/Geometry>
@@ -47,10 +49,11 @@ struct CellBudget {
   int cells;
   Progress* progress = nullptr;
 
-  /// Lets `use` have one of so many equal parts. What it leaves, the others have.
+  /// Lets `use` have one of so many equal parts, but no more than `most`, for those of one use are in memory
+  /// together. What it leaves, the others have.
   template <typename Use>
-  void share(std::size_t parts, const Use& use) {
-    const int own = cells / static_cast<int>(parts);
+  void share(std::size_t parts, const Use& use, int most = std::numeric_limits<int>::max()) {
+    const int own = std::min(cells / static_cast<int>(parts), most);
     CellBudget part{own, progress};
     use(part);
     cells -= own - part.cells;

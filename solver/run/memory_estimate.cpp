@@ -40,7 +40,8 @@ bool has_few_values(const VectorField& field) {
 }
 
 /// Where a mesh refines itself is not known. It does so in a few places, which are cheaper to cut than a grid
-/// that is as fine everywhere.
+/// that is as fine everywhere. Where diagonals alternate, pieces are alike if the squares can be halved often
+/// enough, but mostly hardly any are.
 Grid grid_of(const Problem& problem, double triangles, bool repeated) {
   if (!std::holds_alternative<Rectangle>(problem.domain)) {
     const double n = std::sqrt(triangles / 2);
@@ -55,7 +56,8 @@ Grid grid_of(const Problem& problem, double triangles, bool repeated) {
           rectangle.size.x() / (finer * x),
           rectangle.size.y() / (finer * y),
           true,
-          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0};
+          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0 &&
+              problem.mesh.pattern != Pattern::alternating};
 }
 
 /// Cuts through arms that lie side by side may run along one of them: by so many times are their fronts
@@ -204,8 +206,8 @@ double memory_of_solution(const Spaces& spaces, double triangles) {
   return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
 }
 
-/// Cells along the curve where a density jumps, as measured of the smallest discs.
-constexpr double kCellsOfJump = 9.5e6;
+/// Cells along the curve where a density jumps, as measured of the smallest discs, under laws that vary.
+constexpr double kCellsOfJump = 14.5e6;
 
 bool jumps(const VectorField& density) {
   return std::ranges::any_of(density.fields(), [](const Field& field) {

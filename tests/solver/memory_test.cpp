@@ -138,7 +138,20 @@ TEST_P(Memory, OfMeansOverTinyDiscs) {
   mean.density = VectorField(disc, Field(0));
   Problem pressed = elastic(GetParam(), 4, 4);
   pressed.quantities = {mean};
-  for (const Problem& problem : {sagging, pressed}) {
+  Problem fine = membrane(GetParam(), 60, 60), varying = membrane(GetParam(), 6, 4);
+  fine.quantities = varying.quantities = sagging.quantities;
+  fine.material = varying.material = MembraneStiffness::isotropic(problems::formula("2 + sin(5*x)"));
+  for (const Problem& problem : {sagging, pressed, fine, varying}) {
+    const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}).memory_bytes;
+    EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes),
+              predicted);
+  }
+}
+
+/// Of squares that cannot be halved often hardly any pieces are alike there.
+TEST_P(Memory, WhereDiagonalsAlternate) {
+  for (Problem problem : {membrane(GetParam(), 73, 59), elastic(GetParam(), 73, 59)}) {
+    problem.mesh.pattern = Pattern::alternating;
     const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}).memory_bytes;
     EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes),
               predicted);
