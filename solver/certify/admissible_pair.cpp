@@ -18,7 +18,6 @@ void improve(const Discretization& discrete, const Solution& solution, const Eig
   if (discrete.spaces().components == 1) {
     pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
     minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
-    pair.of_balance = stream_function_of_balance(discrete, progress);
     return;
   }
   pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
@@ -40,16 +39,19 @@ AdmissiblePair admissible_pair(const Discretization& discrete, const Solution& s
                                const Eigen::VectorXd& coupling, Progress& progress) {
   const Eigen::VectorXd clearance =
       discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()));
-  AdmissiblePair pair{{discrete, solution, coupling, progress}, {discrete, solution.stress, clearance}};
+  AdmissiblePair pair{{discrete, solution, coupling, progress},
+                      {discrete, solution.stress, clearance},
+                      stream_function_of_balance(discrete, progress)};
   improve(discrete, solution, clearance, pair, progress);
   return pair;
 }
 
 AdmissiblePair dual_pair(const Discretization& discrete, const Solution& solution,
-                         const Eigen::VectorXd& coupling, const AdmissiblePair& base, double factor,
-                         Progress& progress) {
+                         const Eigen::VectorXd& coupling, std::optional<QuadraticValues> of_balance,
+                         const AdmissiblePair& base, double factor, Progress& progress) {
   AdmissiblePair pair{{discrete, solution, coupling, base.v, factor, progress},
-                      {discrete, solution.stress, base.pressure, factor}};
+                      {discrete, solution.stress, base.pressure, factor},
+                      std::move(of_balance)};
   improve(discrete, solution, Eigen::VectorXd::Zero(discrete.clearance.rows.size()), pair, progress);
   return pair;
 }

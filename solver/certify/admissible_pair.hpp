@@ -31,8 +31,9 @@ AdmissiblePair admissible_pair(const Discretization& discrete, const Solution& s
 
 /// The pair (η, τ) of a dual problem beside that of the base: the gap of its problem is w, and on Γ_C
 /// |w − η_n| ≤ K (g − v_n) and |p_τ| ≤ K p* (THEORY.md, Theorem 4), with a K as near to the factor as can be.
+/// `of_balance`: stream_function_of_balance().
 AdmissiblePair dual_pair(const Discretization& discrete, const Solution& solution,
-                         const Eigen::VectorXd& coupling, const AdmissiblePair& base, double factor,
-                         Progress& progress);
+                         const Eigen::VectorXd& coupling, std::optional<QuadraticValues> of_balance,
+                         const AdmissiblePair& base, double factor, Progress& progress);
 
 }  // namespace signorini

@@ -103,7 +103,8 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   LoadsBroughtBack of_patches;
   if (discrete.spaces().components == 1) {
     of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);
-    totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair), owners, progress);
+    totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair, norms), owners,
+                  progress);
   } else {
     totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions, norms),
                   owners, progress);

@@ -22,6 +22,7 @@ class StressValues {
     for (const Point& point : points) tau_.push_back(spaces.row.reference_values(point));
   }
 
+  int functions() const { return functions_; }
   /// σ_h at point q. `coefficients`: of one triangle, function by function, the rows of a function together.
   template <typename Coefficients>
   Tensor<D> operator()(int q, const AffineMap& map, const Coefficients& coefficients) const {

@@ -8,7 +8,7 @@
 
 namespace signorini {
 
-/// What an admissible pair counts in a sum over several pairs on one mesh.
+/// What an admissible pair counts in a sum over several pairs on one mesh: the first one once.
 struct PairTerm {
   double factor;
   const Discretization& discrete;  ///< which the pair belongs to
@@ -20,6 +20,13 @@ template <int D, typename Term>
 Quadratic<D> displacement_on(const std::vector<Term>& terms, int t) {
   Quadratic<D> sum = Quadratic<D>::Zero();
   for (const PairTerm& term : terms) sum += term.factor * term.v.on<D>(t);
+  return sum;
+}
+
+template <typename Term>
+ProjectedLoad load_on(const std::vector<Term>& terms, int t) {
+  ProjectedLoad sum = terms[0].discrete.body[t];
+  for (std::size_t i = 1; i < terms.size(); ++i) sum = sum.plus(terms[i].factor, terms[i].discrete.body[t]);
   return sum;
 }
 

@@ -5,10 +5,10 @@
 #include "certify/admissible_pair.hpp"
 #include "certify/data/law_pieces.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
-#include "certify/elasticity/shape_norms.hpp"
-#include "certify/membrane/quadratic_balance.hpp"
+#include "certify/membrane/membrane_rule.hpp"
 #include "certify/pair_term.hpp"
 #include "certify/patches/patch_pairs.hpp"
+#include "certify/shape_norms.hpp"
 #include "certify/tensor.hpp"
 
 namespace signorini {
@@ -45,8 +45,7 @@ struct TriangleSums {
 /// Membrane: σ* is σ_h, the quadratic balance, and the curl of the stream function of both it and the
 /// pressure; v is v_h. On a patch σ* has a change of its own besides, and there is a second pair.
 ///
-/// v and σ* may be sums of those of several pairs on one mesh, each times a number; the load is the same sum
-/// of theirs.
+/// v, σ* and the load may be sums of those of several pairs on one mesh, all but the first times a number.
 ///
 /// The rules are exact for what is integrated with a law that is a polynomial of some degree. What it has
 /// beyond that counts twice, in the integral and in the rule, whose weights are positive.
@@ -56,37 +55,32 @@ class MembraneSums {
     const AdmissiblePair& pair;
   };
 
-  MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress, const AdmissiblePair& pair);
-  /// `load`: of all terms together. It must outlive this.
-  MembraneSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load);
+  MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress, const AdmissiblePair& pair,
+               ShapeNorms& norms);
+  /// `norms`, those of the same law, must outlive this.
+  MembraneSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms);
   explicit MembraneSums(const PatchPairs& pairs);
 
   TriangleSums operator()(int t, LawField<1>& law, const LawOnMesh& laws) const;
 
  private:
-  /// Where the integrals are evaluated, with what does not depend on the triangle.
-  struct Rule {
-    /// `balanced`: with the values of QuadraticBalance.
-    Rule(const Spaces& spaces, std::vector<WeightedPoint> points, bool balanced);
+  using Balance = QuadraticBalance::Data;
 
-    std::vector<WeightedPoint> points;
-    StressValues<1> stress;
-    std::vector<QuadraticBalance::Values> balance;
-    std::vector<Eigen::Matrix<double, 6, 1>> basis;
-    std::vector<Eigen::Matrix<double, 2, 6>> gradients;
-  };
+  MembraneSums(const Discretization& discrete, std::vector<Term> terms);
 
-  template <int Degree>
-  static const Rule& rule_of_degree(int order);
-  const Rule& rule_for(int degree) const;
-  std::optional<QuadraticBalance::Data> balance_on(int t) const;
-  void integrate(int t, const Rule& rule, const std::optional<QuadraticBalance::Data>& balance, double error,
+  std::optional<Balance> balance_on(int t) const;
+  LocalVector stress_on(int t) const;
+  Quadratic<1> stream_function_on(int t) const;
+  TriangleSums by_norms(int t, const MembraneNorms& norms, const Balance& balance) const;
+  void integrate(int t, const MembraneRule& rule, const std::optional<Balance>& balance, double error,
                  LawField<1>& law, TriangleSums& sums) const;
+  TriangleSums by_points(int t, const std::optional<Balance>& balance, LawField<1>& law,
+                         const LawOnMesh& laws) const;
 
   const Discretization& discrete_;
   std::vector<Term> terms_;
-  const LoadProjection& load_;
   bool is_balanced_;                        ///< σ_h by itself, on all triangles
+  ShapeNorms* norms_ = nullptr;             ///< of a patch none
   const AdmissiblePair* second_ = nullptr;  ///< against that of the only term
   const Eigen::MatrixXd* change_ = nullptr;
 };
@@ -104,10 +98,8 @@ class ElasticSums {
     const EdgeTractions& tractions;
   };
 
-  /// Of several pairs: `gap`, `strain` and `energy` alone. `load`: of all terms together. It must outlive
-  /// this, as `norms` must, those of the same law.
-  ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load,
-              ShapeNorms& norms);
+  /// Of several pairs: `gap`, `strain` and `energy` alone. `norms`, those of the same law, must outlive this.
+  ElasticSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms);
   ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions, ShapeNorms& norms);
 
@@ -139,7 +131,6 @@ class ElasticSums {
 
   const Discretization& discrete_;
   std::vector<Term> terms_;
-  const LoadProjection& load_;
   const bool has_load_;
   bool needs_all_ = false;
   ShapeNorms& norms_;

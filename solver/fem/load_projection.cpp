@@ -108,23 +108,15 @@ void LoadProjection::take(ProjectedLoad load, bool may_be_shared) {
   last_may_be_shared_ = may_be_shared;
 }
 
-LoadProjection LoadProjection::plus(double z, const LoadProjection& other) const {
+ProjectedLoad ProjectedLoad::plus(double z, const ProjectedLoad& other) const {
   const double size = std::abs(z);
-  const auto sum_of = [&](const ProjectedLoad& own, const ProjectedLoad& more) -> ProjectedLoad {
-    return {own.projection + z * more.projection,
-            own.balanced + z * more.balanced,
-            own.rest + size * more.rest,
-            own.unbalanced + size * more.unbalanced,
-            own.uncertain_force + size * more.uncertain_force,
-            own.uncertain_work + size * more.uncertain_work,
-            own.jumps || more.jumps};
-  };
-  LoadProjection sum;
-  sum.unmet_ = unmet_.empty() ? other.unmet_ : unmet_;
-  const std::size_t count = std::max(number_of_.size(), other.number_of_.size());
-  for (int t = 0; t < static_cast<int>(count); ++t) sum.take(sum_of((*this)[t], other[t]));
-  if (count == 0) sum.all_.push_back(sum_of(all_[0], other.all_[0]));
-  return sum;
+  return {projection + z * other.projection,
+          balanced + z * other.balanced,
+          rest + size * other.rest,
+          unbalanced + size * other.unbalanced,
+          uncertain_force + size * other.uncertain_force,
+          uncertain_work + size * other.uncertain_work,
+          jumps || other.jumps};
 }
 
 bool LoadProjection::project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,

@@ -25,6 +25,8 @@ struct ProjectedLoad {
   bool jumps = false;  ///< Πf is Π₁f in a component that jumps
 
   bool operator==(const ProjectedLoad&) const = default;
+  /// Of f + z q, with that of q on the same triangle. What both may be off by adds up.
+  ProjectedLoad plus(double z, const ProjectedLoad& other) const;
 };
 
 /// The load of a problem on all triangles of its mesh.
@@ -32,9 +34,6 @@ class LoadProjection {
  public:
   /// `progress` may be null; else throws what it throws.
   LoadProjection(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
-
-  /// Of f + z q, with the projection of q on the same mesh. What both may be off by adds up.
-  LoadProjection plus(double z, const LoadProjection& other) const;
 
   const ProjectedLoad& operator[](int t) const { return all_[number_of_.empty() ? 0 : number_of_[t]]; }
   /// It is not known to be 0.
@@ -45,7 +44,6 @@ class LoadProjection {
   const std::vector<std::string>& unmet() const { return unmet_; }
 
  private:
-  LoadProjection() = default;
   /// `largest`: of |f|. Returns false if a component could do with more cells than its share of the budget.
   bool project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
                   CellBudget& budget, ProjectedLoad& load);

@@ -4,7 +4,6 @@
 
 #include "certify/data/oscillation.hpp"
 #include "contact/complete.hpp"
-#include "contact/dual_contact.hpp"
 #include "system/hybrid_system.hpp"
 
 namespace signorini {
@@ -23,34 +22,42 @@ CondensedDual::CondensedDual(const CondensedProblem& base, const Quantity& quant
       right_(assemble_right(discretization_, progress)),
       condensed_(*operator_, right_, progress),
       remainders_(load_remainders(discretization_, progress)),
+      of_balance_(stream_function_of_balance(discretization_, progress)),
       has_loads_(!quantity.has_no_loads()) {}
+
+const CondensedDual::Solved& CondensedDual::solved(const DualContact& contact, Progress& progress) {
+  if (last_ && last_->clearance == contact.clearance && last_->open == contact.open) return *last_;
+  last_.reset();
+  const Discretization& discrete = discretization_;
+  Completed all = complete(discrete, condensed_, contact.clearance, contact.open, progress);
+  Solution solution;
+  solution.stress = std::move(all.fields.stress);
+  // Where the weight is that of an open contact nothing is stressed, and what is left is rounding.
+  if (!has_loads_ &&
+      solution.stress.lpNorm<Eigen::Infinity>() <= kNoStress * right_.lpNorm<Eigen::Infinity>())
+    solution.stress.setZero();
+  solution.displacement = std::move(all.fields.displacement);
+  solution.rotation = discrete.traces.rotation(all.coupling);
+  const Eigen::VectorXd on_rows = discrete.clearance.clearance(contact.clearance);
+  solution.summary.residuals = residuals(solution, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discrete);
+  last_ = Solved{contact.clearance, contact.open, std::move(all.coupling), std::move(solution)};
+  return *last_;
+}
 
 void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progress& progress) {
   const DualContact contact =
       dual_contact(base_.contact(), clearance, dual_.condensed_.contact().c, factor, progress);
-  const Discretization& discrete = dual_.discretization_;
-  Completed all = complete(discrete, dual_.condensed_, contact.clearance, contact.open, progress);
   factor_ = factor;
   largest_factor_ = contact.largest_factor;
-  coupling_ = std::move(all.coupling);
-  clearance_ = contact.clearance;
-  solution_.stress = std::move(all.fields.stress);
-  // Where the weight is that of an open contact nothing is stressed, and what is left is rounding.
-  if (!dual_.has_loads_ &&
-      solution_.stress.lpNorm<Eigen::Infinity>() <= kNoStress * dual_.right_.lpNorm<Eigen::Infinity>())
-    solution_.stress.setZero();
-  solution_.displacement = std::move(all.fields.displacement);
-  solution_.rotation = discrete.traces.rotation(coupling_);
-  const Eigen::VectorXd on_rows = discrete.clearance.clearance(contact.clearance);
-  solution_.summary.residuals =
-      residuals(solution_, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discrete);
+  solved_ = &dual_.solved(contact, progress);
 }
 
 CertifiedSolution DualSolution::certified(const CertifiedSolution& base, double factor, const LawOnMesh& laws,
                                           Progress& progress) const {
   return {discretization(),
-          solution_,
-          dual_pair(discretization(), solution_, coupling_, base.pair, factor, progress),
+          solved_->solution,
+          dual_pair(discretization(), solved_->solution, solved_->coupling, dual_.of_balance_, base.pair,
+                    factor, progress),
           dual_.remainders_,
           laws,
           progress,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "certify/quantities/certified_solution.hpp"
+#include "contact/dual_contact.hpp"
 #include "run/condensed_problem.hpp"
 
 namespace signorini {
@@ -17,13 +18,25 @@ class CondensedDual {
  private:
   friend class DualSolution;
 
+  /// With contact closed where it was, its solution is the same for many entries of a sweep.
+  struct Solved {
+    Eigen::VectorXd clearance;
+    std::vector<int> open;
+    Eigen::VectorXd coupling;
+    Solution solution;
+  };
+
+  const Solved& solved(const DualContact& contact, Progress& progress);
+
   const std::shared_ptr<const Operator> operator_;  ///< has the mesh
   Problem problem_;
   Discretization discretization_;
   const Eigen::VectorXd right_;
   CondensedContact condensed_;
-  const Eigen::VectorXd remainders_;  ///< load_remainders()
+  const Eigen::VectorXd remainders_;                 ///< load_remainders()
+  const std::optional<QuadraticValues> of_balance_;  ///< stream_function_of_balance()
   const bool has_loads_;
+  std::optional<Solved> last_;
 };
 
 /// What the solution of a problem changes by along its data: its dual problem, solved with contact closed
@@ -44,10 +57,11 @@ class DualSolution {
     return factor != factor_ && (largest_factor_ > factor || std::isfinite(factor_));
   }
 
-  const Eigen::MatrixXd& stress() const { return solution_.stress; }
+  const Eigen::MatrixXd& stress() const { return solved_->solution.stress; }
   /// max |η| in the body, and of the clearances.
   double largest_displacement() const {
-    return std::max(solution_.displacement.lpNorm<Eigen::Infinity>(), clearance_.lpNorm<Eigen::Infinity>());
+    return std::max(solved_->solution.displacement.lpNorm<Eigen::Infinity>(),
+                    solved_->clearance.lpNorm<Eigen::Infinity>());
   }
 
   /// With the pair beside that of the base: `factor` is that of dual_pair(). Refers to this.
@@ -58,8 +72,7 @@ class DualSolution {
   const CondensedProblem& base_;
   CondensedDual& dual_;
   double factor_ = 0, largest_factor_ = 0;
-  Eigen::VectorXd coupling_, clearance_;
-  Solution solution_;
+  const CondensedDual::Solved* solved_ = nullptr;
 };
 
 }  // namespace signorini

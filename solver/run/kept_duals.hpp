@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "certify/elasticity/shape_norms.hpp"
+#include "certify/shape_norms.hpp"
 #include "run/dual_solution.hpp"
 #include "run/memory_estimate.hpp"
 #include "run/openings.hpp"

@@ -215,22 +215,22 @@ bool jumps(const VectorField& density) {
   });
 }
 
-/// As measured, in solutions, beside the load of the quantity and its sum with that of the problem where they
-/// vary.
+/// As measured, in solutions, beside the load of the quantity where it varies.
 double memory_of_dual(const Problem& problem, const Spaces& spaces, double triangles) {
-  const bool density_varies = !std::ranges::all_of(problem.quantities, is_uniform, &Quantity::density);
-  const int loads = density_varies ? 2 : is_uniform(problem.body) ? 0 : 1;
+  const bool varies = !std::ranges::all_of(problem.quantities, is_uniform, &Quantity::density);
   const double of_jumps = std::ranges::any_of(problem.quantities, jumps, &Quantity::density)
                               ? kCellsOfJump + tables_of_jumps(spaces)
                               : 0;
   return (spaces.components == 1 ? 2 : 5) * memory_of_solution(spaces, triangles) + of_jumps +
-         triangles * loads * static_cast<double>(sizeof(ProjectedLoad));
+         (varies ? triangles * static_cast<double>(sizeof(ProjectedLoad)) : 0);
 }
 
 double memory_of_kept_dual(const Quantity& quantity, const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double sides = 3;  // given, condensed, and at work
-  return sizes.triangles * (discretization(quantity.density, spaces) + kNumber) +
-         sides * kNumber * sizes.system;
+  constexpr double sides = 4;     // given, condensed, and at work, and that of the last solution
+  constexpr double values = 2.2;  // of quadratic functions, with what is held of them
+  const double of_balance = spaces.components == 1 ? values : 0;
+  return sizes.triangles * (discretization(quantity.density, spaces) + kNumber * (1 + of_balance)) +
+         memory_of_solution(spaces, sizes.triangles) + sides * kNumber * sizes.system;
 }
 
 double memory_of_kept_duals(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {

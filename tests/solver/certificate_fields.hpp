@@ -6,8 +6,8 @@
 
 #include "certify/admissible_pair.hpp"
 #include "certify/displacement/relaxation.hpp"
-#include "certify/elasticity/shape_norms.hpp"
 #include "certify/membrane/stream_function_minimization.hpp"
+#include "certify/shape_norms.hpp"
 #include "contact/active_set.hpp"
 #include "contact/condense.hpp"
 #include "problems/membrane.hpp"

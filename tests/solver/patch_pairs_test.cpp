@@ -336,10 +336,11 @@ TEST(PatchPairs, AreOffByWhatTheRulesMissOfBothPairs) {
   for (const auto& pairs : pairs_of(whole)) {
     const OnPatch on(*pairs);
     const Mesh& mesh = *pairs->patch().mesh;
+    ShapeNorms norms;
     const LawOnMesh laws(problem.material, mesh, 0.3, whole.progress());
     for (int t = 0; t < pairs->discretization().triangles(); ++t) {
-      const TriangleSums one = MembraneSums(pairs->discretization(), pairs->stress(), pairs->first())(t, law,
-                                                                                                      laws),
+      const TriangleSums one = MembraneSums(pairs->discretization(), pairs->stress(), pairs->first(), norms)(
+                             t, law, laws),
                          both = MembraneSums(*pairs)(t, law, laws);
       const double error = one.slack / (2 * one.stress + 3 * one.correction + 2 * one.strain);
       const AffineMap map(mesh.corners(t));

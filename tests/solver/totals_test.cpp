@@ -48,7 +48,7 @@ struct Made {
   explicit Made(CertificateFields& of)
       : fields(of),
         laws(of.discretization().problem.material, of.mesh(), 0.3, of.progress()),
-        sums(of.discretization(), of.solution().stress, of.pair()),
+        sums(of.discretization(), of.solution().stress, of.pair(), norms),
         totals(of.discretization().triangles()) {
     Owners owners(of.discretization().triangles());
     std::iota(owners.begin(), owners.end(), 0);
@@ -57,6 +57,7 @@ struct Made {
 
   CertificateFields& fields;
   LawOnMesh laws;
+  ShapeNorms norms;
   MembraneSums sums;
   Totals totals;
 };
@@ -121,8 +122,9 @@ TEST(Totals, HaveTheContactTermsAgainstASecondPair) {
   std::iota(owners.begin(), owners.end(), 0);
   const LawOnMesh laws(problem.material, fields.mesh(), 1e-8, fields.progress());
   Totals totals(fields.discretization().triangles());
+  ShapeNorms norms;
   totals.add<1>(fields.discretization(), laws, fields.pair(),
-                MembraneSums(fields.discretization(), fields.solution().stress, fields.pair()), owners,
+                MembraneSums(fields.discretization(), fields.solution().stress, fields.pair(), norms), owners,
                 fields.progress(), &second);
   const auto room_of_second = [&](int i, double s) { return second.v.room(fields.contact_edges()[i], s); };
   const double first_by_second =

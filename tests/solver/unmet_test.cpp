@@ -5,7 +5,7 @@
 #include "certify/certificate.hpp"
 #include "certify/data/carried_loads.hpp"
 #include "certify/elasticity/edge_tractions.hpp"
-#include "certify/elasticity/shape_norms.hpp"
+#include "certify/shape_norms.hpp"
 #include "no_pressure.hpp"
 #include "problems/elasticity.hpp"
 #include "solved_problem.hpp"

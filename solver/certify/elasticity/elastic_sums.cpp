@@ -19,13 +19,15 @@ int degree_of_fields(bool lifted) {
 
 ElasticSums::ElasticSums(const Discretization& discrete, const Solution& solution,
                          const AdmissibleDisplacement& v, const EdgeTractions& tractions, ShapeNorms& norms)
-    : ElasticSums(discrete, {{{1, discrete, solution.stress, v}, tractions}}, discrete.body, norms) {
+    : ElasticSums(discrete, {{{1, discrete, solution.stress, v}, tractions}}, norms) {
   needs_all_ = true;
 }
 
-ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms, const LoadProjection& load,
-                         ShapeNorms& norms)
-    : discrete_(discrete), terms_(std::move(terms)), load_(load), has_load_(load.is_any()), norms_(norms) {
+ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms)
+    : discrete_(discrete),
+      terms_(std::move(terms)),
+      has_load_(std::ranges::any_of(terms_, [](const Term& term) { return term.discrete.body.is_any(); })),
+      norms_(norms) {
   norms_.look_over(discrete);
 }
 
@@ -61,7 +63,7 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
                                    TriangleSums& sums) const {
   if (!has_load_) return;
   const bool lifted = is_lifted(terms_, t);
-  const ProjectedLoad& load = load_[t];
+  const ProjectedLoad load = load_on(terms_, t);
   const Quadratic<2> quadratic = load.projection;
   double work = 0, rest_square = 0;
   for (int q = 0; q < rule.size(); ++q) {
@@ -85,7 +87,7 @@ void ElasticSums::add_rest_of_lifts(int t, const AffineMap& map, const LawPiece&
                                     TriangleSums& sums) const {
   const AdmissibleDisplacement::LiftRest rest = rest_of_lifts(terms_, t);
   if (rest.slope == 0) return;
-  const ProjectedLoad& load = load_[t];
+  const ProjectedLoad load = load_on(terms_, t);
   const double area = map.determinant / 2, zeta = rest.slope * std::sqrt(area * law.stiffest);
   sums.energy_slack += zeta * (std::sqrt(2 * sums.strain + sums.slack) + zeta / 2) +
                        rest.value * (std::sqrt(area) * load.rest + area * load.projection.norm());
@@ -173,7 +175,7 @@ TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& l
       pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
   Inner inner = Inner::Zero();
   TriangleSums sums;
-  if (const auto* norms = lifted || !constant_law ? nullptr : norms_(map, discrete_.spaces(), law)) {
+  if (const auto* norms = lifted || !constant_law ? nullptr : norms_.elastic(map, discrete_.spaces(), law)) {
     const Found& found = by_norms(t, *norms);
     sums = found.sums;
     inner = found.inner;

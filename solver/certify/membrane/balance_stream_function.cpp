@@ -26,6 +26,7 @@ Eigen::VectorXd work_against(const Discretization& discrete, const QuadraticBala
 std::optional<QuadraticValues> stream_function_of_balance(const Discretization& discrete,
                                                           Progress& progress) {
   constexpr int steps = 6;
+  if (discrete.spaces().components == 2) return std::nullopt;
   const QuadraticBalance balance(discrete);
   if (!balance.is_needed()) return std::nullopt;
   QuadraticValues stream_function(discrete.mesh);

@@ -8,15 +8,6 @@
 #include "certify/rounding.hpp"
 
 namespace signorini {
-namespace {
-
-std::vector<Point> points_of(const std::vector<WeightedPoint>& rule) {
-  std::vector<Point> points;
-  for (const auto& [point, weight] : rule) points.push_back(point);
-  return points;
-}
-
-}  // namespace
 
 TriangleSums& TriangleSums::operator+=(const TriangleSums& other) {
   gap += other.gap;
@@ -56,65 +47,70 @@ void TriangleSums::add_rounding(const AffineMap& map, const LawPiece& law, doubl
   energy_slack += rounding * (std::sqrt(2 * strain) + rounding);
 }
 
-MembraneSums::Rule::Rule(const Spaces& spaces, std::vector<WeightedPoint> given, bool balanced)
-    : points(std::move(given)), stress(spaces, points_of(points)) {
-  for (const auto& [point, weight] : points) {
-    if (balanced) balance.push_back(QuadraticBalance::reference_values(point));
-    basis.push_back(quadratic_basis(point));
-    gradients.push_back(quadratic_gradients(point));
-  }
+MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                           const AdmissiblePair& pair, ShapeNorms& norms)
+    : MembraneSums(discrete, {{{1, discrete, stress, pair.v}, pair}}, norms) {}
+
+MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms)
+    : MembraneSums(discrete, std::move(terms)) {
+  norms_ = &norms;
+  if (!is_balanced_) norms.look_over(discrete);
 }
 
-MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd& stress,
-                           const AdmissiblePair& pair)
-    : MembraneSums(discrete, {{{1, discrete, stress, pair.v}, pair}}, discrete.body) {}
-
-MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms,
-                           const LoadProjection& load)
-    : discrete_(discrete),
-      terms_(std::move(terms)),
-      load_(load),
-      is_balanced_(std::ranges::none_of(
-          terms_, [](const Term& term) { return QuadraticBalance(term.discrete).is_needed(); })) {}
-
 MembraneSums::MembraneSums(const PatchPairs& pairs)
-    : MembraneSums(pairs.discretization(), pairs.stress(), pairs.first()) {
+    : MembraneSums(pairs.discretization(),
+                   {{{1, pairs.discretization(), pairs.stress(), pairs.first().v}, pairs.first()}}) {
   second_ = &pairs.second();
   change_ = &pairs.change();
 }
 
-/// Made once, by the order of the spaces.
-template <int Degree>
-const MembraneSums::Rule& MembraneSums::rule_of_degree(int order) {
-  static const std::array<Rule, 2> rules{
-      Rule(spaces_of(Scheme::nonconforming, 1), signorini::rule_of_degree(Degree), true),
-      Rule(spaces_of(Scheme::conforming, 1), signorini::rule_of_degree(Degree), true)};
-  return rules[order];
-}
-
-const MembraneSums::Rule& MembraneSums::rule_for(int degree) const {
-  const int order = discrete_.spaces().order;
-  if (degree <= 2) return rule_of_degree<2>(order);
-  if (degree <= 4) return rule_of_degree<4>(order);
-  if (degree <= 5) return rule_of_degree<5>(order);
-  if (degree <= 6) return rule_of_degree<6>(order);
-  if (degree <= 8) return rule_of_degree<8>(order);
-  if (degree <= 10) return rule_of_degree<10>(order);
-  return degree <= 18 ? rule_of_degree<18>(order) : rule_of_degree<30>(order);
-}
+MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms)
+    : discrete_(discrete),
+      terms_(std::move(terms)),
+      is_balanced_(std::ranges::none_of(
+          terms_, [](const Term& term) { return QuadraticBalance(term.discrete).is_needed(); })) {}
 
 std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
-  std::optional<QuadraticBalance::Data> sum;
+  std::optional<Balance> sum;
   if (is_balanced_) return sum;
   for (const Term& term : terms_) {
     const auto own = QuadraticBalance(term.discrete)(t);
-    if (own) sum = sum.value_or(QuadraticBalance::Data::Zero()) + term.factor * *own;
+    if (own) sum = sum.value_or(Balance::Zero()) + term.factor * *own;
   }
   return sum;
 }
 
-TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
-  const std::optional<QuadraticBalance::Data> balance = balance_on(t);
+LocalVector MembraneSums::stress_on(int t) const {
+  LocalVector sum = LocalVector::Zero(terms_[0].stress.rows());
+  for (const Term& term : terms_) sum += term.factor * term.stress.col(t);
+  return sum;
+}
+
+Quadratic<1> MembraneSums::stream_function_on(int t) const {
+  Quadratic<1> sum = Quadratic<1>::Zero();
+  for (const Term& term : terms_) sum += term.factor * term.pair.stream_function_on(discrete_.mesh, t);
+  return sum;
+}
+
+/// Where nothing is lifted.
+TriangleSums MembraneSums::by_norms(int t, const MembraneNorms& norms, const Balance& balance) const {
+  using Column = MembraneNorms::Column;
+  const Column stress = norms.stress.lazyProduct(stress_on(t)),
+               correction = norms.stream_function.lazyProduct(stream_function_on(t).transpose()) +
+                            norms.balance.lazyProduct(balance),
+               strain = norms.strain.lazyProduct(displacement_on<1>(terms_, t).transpose()),
+               direct_gap = stress - strain;
+  TriangleSums sums;
+  sums.gap = (direct_gap + correction).squaredNorm();
+  sums.direct_gap = direct_gap.squaredNorm();
+  sums.correction = correction.squaredNorm();
+  sums.stress = stress.squaredNorm();
+  sums.strain = sums.energy = strain.squaredNorm() / 2;
+  return sums;
+}
+
+TriangleSums MembraneSums::by_points(int t, const std::optional<Balance>& balance, LawField<1>& law,
+                                     const LawOnMesh& laws) const {
   const bool lifted = is_lifted(terms_, t), cubic = balance.has_value();
   const int of_fields =
       std::max(cubic ? 3 : discrete_.spaces().order + 1, lifted ? Lift::kDegreeInside - 1 : 1);
@@ -126,20 +122,30 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   };
   if (pieces.empty()) {
     const int degree = degree_on(laws.whole(t));
-    integrate(t, rule_for(degree), balance, laws.whole(t).error_of_rule(degree, of_fields), law, sums);
+    integrate(t, membrane_rule(discrete_.spaces(), degree), balance,
+              laws.whole(t).error_of_rule(degree, of_fields), law, sums);
   }
   for (const LawPiece& piece : pieces) {
     const int degree = degree_on(piece);
     std::vector<WeightedPoint> points;
-    for (const auto& [point, weight] : signorini::rule_of_degree(degree))
+    for (const auto& [point, weight] : rule_of_degree(degree))
       points.push_back({piece.place(point), piece.place.share * weight});
-    integrate(t, Rule(discrete_.spaces(), std::move(points), cubic), balance,
+    integrate(t, MembraneRule(discrete_.spaces(), std::move(points), cubic), balance,
               piece.error_of_rule(degree, of_fields), law, sums);
   }
+  return sums;
+}
+
+TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& laws) const {
+  const AffineMap map(discrete_.mesh.corners(t));
+  const std::optional<Balance> balance = balance_on(t);
+  // Without one there are three points, or six.
+  const MembraneNorms* const norms =
+      balance && norms_ && !is_lifted(terms_, t) ? norms_->membrane(map, discrete_.spaces(), law) : nullptr;
+  TriangleSums sums = norms ? by_norms(t, *norms, *balance) : by_points(t, balance, law, laws);
 
   // Πf is what counts but for the lifts: the rest of f is orthogonal to v, where that is quadratic.
-  const ProjectedLoad& load = load_[t];
-  const AffineMap map(discrete_.mesh.corners(t));
+  const ProjectedLoad load = load_on(terms_, t);
   const Quadratic<1> v = displacement_on<1>(terms_, t);
   const double area = map.determinant / 2, largest_value = bound_of_quadratic(v);
   sums.energy -= map.determinant * (v * quadratic_mass() * load.projection.transpose()).value();
@@ -155,23 +161,19 @@ TriangleSums MembraneSums::operator()(int t, LawField<1>& law, const LawOnMesh& 
   return sums;
 }
 
-void MembraneSums::integrate(int t, const Rule& rule, const std::optional<QuadraticBalance::Data>& balance,
+void MembraneSums::integrate(int t, const MembraneRule& rule, const std::optional<Balance>& balance,
                              double error, LawField<1>& law, TriangleSums& sums) const {
   const AffineMap map(discrete_.mesh.corners(t));
   const Eigen::Matrix2d inverse = map.jacobian.inverse();
   const Quadratic<1> v = displacement_on<1>(terms_, t);
-  Quadratic<1> stream_function = Quadratic<1>::Zero();
-  LocalVector stress = LocalVector::Zero(terms_[0].stress.rows());
-  for (const Term& term : terms_) {
-    stream_function += term.factor * term.pair.stream_function_on(discrete_.mesh, t);
-    stress += term.factor * term.stress.col(t);
-  }
+  const Quadratic<1> stream_function = stream_function_on(t);
+  const LocalVector stress = stress_on(t);
   Quadratic<1> w = Quadratic<1>::Zero(), stream_function_of_tau = Quadratic<1>::Zero();
   if (second_) {
     w = v - second_->v.on<1>(t);
     stream_function_of_tau = stream_function - second_->stream_function_on(discrete_.mesh, t);
   }
-  const Quadratic<1> load = load_[t].projection;
+  const ProjectedLoad load = load_on(terms_, t);
   const bool curled = !stream_function.isZero(0), lifted = is_lifted(terms_, t);
   double lifted_square = 0;
   for (int q = 0; q < static_cast<int>(rule.points.size()); ++q) {
@@ -183,7 +185,7 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     if (lifted) {
       Eigen::Matrix<double, 1, 1> lift = Eigen::Matrix<double, 1, 1>::Zero();
       add_lifts<1>(terms_, t, reference, inverse, lift, slope);
-      sums.energy -= weight * (load * rule.basis[q]).value() * lift[0];
+      sums.energy -= weight * (load.projection * rule.basis[q]).value() * lift[0];
       lifted_square += weight * lift[0] * lift[0];
     }
     Tensor<1> correction = Tensor<1>::Zero();
@@ -215,8 +217,7 @@ void MembraneSums::integrate(int t, const Rule& rule, const std::optional<Quadra
     sums.slack += 2 * error * all_fields;
     sums.energy_slack += error * of_strain;
   }
-  const ProjectedLoad& body = load_[t];
-  sums.energy_slack += body.rest * std::sqrt(lifted_square);
+  sums.energy_slack += load.rest * std::sqrt(lifted_square);
 }
 
 }  // namespace signorini

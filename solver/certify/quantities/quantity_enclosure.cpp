@@ -33,8 +33,7 @@ double square_of_bubble(const Mesh& mesh, int edge) {
 }  // namespace
 
 template <int D>
-QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& terms,
-                                                   const LoadProjection& load) const {
+QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& terms) const {
   using FieldSums = std::conditional_t<D == 1, MembraneSums, ElasticSums>;
   std::vector<typename FieldSums::Term> all;
   for (const Term& term : terms) {
@@ -46,12 +45,7 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& term
       all.push_back({pair, *own.pair.tractions});
   }
   const Discretization& discrete = base_.discrete;
-  FieldSums fields = [&] {
-    if constexpr (D == 1)
-      return FieldSums(discrete, std::move(all), load);
-    else
-      return FieldSums(discrete, std::move(all), load, norms_);
-  }();
+  FieldSums fields(discrete, std::move(all), norms_);
   LawField<D> law(discrete.problem.material);
   Sums sums{Eigen::VectorXd(discrete.triangles())};
   for (int t = 0; t < discrete.triangles(); ++t) {
@@ -67,9 +61,8 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& term
   return sums;
 }
 
-QuantityEnclosure::Sums QuantityEnclosure::sums(const std::vector<Term>& terms,
-                                                const LoadProjection& load) const {
-  return base_.discrete.spaces().components == 1 ? sums_of<1>(terms, load) : sums_of<2>(terms, load);
+QuantityEnclosure::Sums QuantityEnclosure::sums(const std::vector<Term>& terms) const {
+  return base_.discrete.spaces().components == 1 ? sums_of<1>(terms) : sums_of<2>(terms);
 }
 
 QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, ShapeNorms& norms,
@@ -79,7 +72,7 @@ QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnM
       norms_(norms),
       progress_(progress),
       everywhere_(base.discrete.triangles(), 0),
-      own_(sums({{1, base}}, base.discrete.body)),
+      own_(sums({{1, base}})),
       contact_(contact_work(base.pair.pressure)) {
   const double gap = norm_with(own_.gaps, base.oscillations) + base.carried();
   const double contact = std::max(0., contact_.value + contact_.radius) * (1 + base.loads.change_of_pressure);
@@ -141,8 +134,7 @@ double QuantityEnclosure::largest_rest(double x, double factor) const {
 /// are more than those of both alone.
 QuantityEnclosure::Bounds QuantityEnclosure::operator()(const CertifiedSolution& dual, double z) const {
   const Discretization &discrete = base_.discrete, &loads = dual.discrete;
-  const Sums way = sums({{1, dual}}, loads.body),
-             end = sums({{1, base_}, {z, dual}}, discrete.body.plus(z, loads.body));
+  const Sums way = sums({{1, dual}}), end = sums({{1, base_}, {z, dual}});
   const double square = z * z;
   // z (q, v) − z J'(v) η.
   Known sum{own_.energy + square * way.energy - end.energy,

@@ -58,8 +58,8 @@ class QuantityEnclosure {
   };
 
   template <int D>
-  Sums sums_of(const std::vector<Term>& terms, const LoadProjection& load) const;
-  Sums sums(const std::vector<Term>& terms, const LoadProjection& load) const;
+  Sums sums_of(const std::vector<Term>& terms) const;
+  Sums sums(const std::vector<Term>& terms) const;
   Known work_of_traction(const Discretization& loads, const AdmissibleDisplacement& v) const;
   Known contact_work(const ContactPressure& pressure) const;
   double beyond_base(const CertifiedSolution& dual) const;

@@ -4,12 +4,13 @@
 #include <optional>
 
 #include "certify/elasticity/johnson_mercier_operators.hpp"
+#include "certify/membrane/membrane_rule.hpp"
 #include "fem/per_shape.hpp"
 
 namespace signorini {
 
-/// The operators of the shapes that a mesh has often, under one constant law: for all sums over it, of a
-/// solve and of the entries of its sweep. A structured mesh has a few shapes, another hardly the same twice.
+/// The norms of the shapes that a mesh has often, under one constant law: for all sums over it, of a solve
+/// and of the entries of its sweep. A structured mesh has a few shapes, another hardly the same twice.
 ///
 /// Which shapes those are depends on the mesh alone, and on nothing that was summed up before: sums are the
 /// same to the last bit in whatever order entries are solved.
@@ -19,14 +20,17 @@ class ShapeNorms {
   void look_over(const Discretization& discrete);
 
   /// Those of a triangle's shape, made if need be; null if few triangles have it.
-  const JohnsonMercierNorms* operator()(const AffineMap& map, const Spaces& spaces, LawField<2>& law);
-  /// The same if they are made.
+  const JohnsonMercierNorms* elastic(const AffineMap& map, const Spaces& spaces, LawField<2>& law);
+  const MembraneNorms* membrane(const AffineMap& map, const Spaces& spaces, LawField<1>& law);
+  /// Those of an elastic body if they are made.
   const JohnsonMercierNorms* made(const AffineMap& map);
 
  private:
   struct Shape {
+    AffineMap map;  ///< of the first triangle, whichever asks for the norms
     int triangles = 0;
-    std::unique_ptr<const JohnsonMercierNorms> norms;
+    std::unique_ptr<const JohnsonMercierNorms> elastic;
+    std::unique_ptr<const MembraneNorms> membrane;
   };
 
   /// Null if few triangles have it.
