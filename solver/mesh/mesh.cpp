@@ -169,13 +169,6 @@ std::size_t Mesh::bytes() const {
   return bytes;
 }
 
-std::vector<std::vector<int>> triangles_at_points(const Mesh& mesh) {
-  std::vector<std::vector<int>> at(mesh.points.size());
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t)
-    for (const int point : mesh.triangles[t]) at[point].push_back(t);
-  return at;
-}
-
 Mesh make_mesh(std::vector<Point> points, std::vector<std::array<int, 3>> triangles,
                const std::vector<std::string>& part_names, const std::vector<BoundarySegment>& segments,
                std::vector<Circle> circles, Progress* progress) {

@@ -80,9 +80,6 @@ struct Mesh {
   std::size_t bytes() const;
 };
 
-/// The triangles at every point.
-std::vector<std::vector<int>> triangles_at_points(const Mesh& mesh);
-
 /// Two points that bound an edge of the boundary, for the part of the given index.
 struct BoundarySegment {
   std::array<int, 2> points;

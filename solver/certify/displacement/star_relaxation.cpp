@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "mesh/mesh.hpp"
+#include "mesh/triangles_at_points.hpp"
 
 namespace signorini {
 namespace {
@@ -30,7 +30,7 @@ class Stars {
   Stars(const Mesh& mesh, const TriangleForms& forms)
       : mesh_(mesh),
         forms_(forms),
-        triangles_(triangles_at_points(mesh)),
+        triangles_(mesh),
         column_(forms.unknowns(mesh), -1),
         x_(Eigen::VectorXd::Zero(forms.unknowns(mesh))) {}
 
@@ -90,7 +90,7 @@ class Stars {
     return i < of_points ? 1 : place.edge_signs[(i - of_points) / forms_.per_edge];
   }
 
-  const Eigen::LLT<Eigen::MatrixXd>& factor_of(const std::vector<int>& triangles) {
+  const Eigen::LLT<Eigen::MatrixXd>& factor_of(std::span<const int> triangles) {
     description_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {
       description_.push_back(forms_.matrix_of[triangles[i]]);
@@ -128,7 +128,7 @@ class Stars {
 
   const Mesh& mesh_;
   const TriangleForms& forms_;
-  const std::vector<std::vector<int>> triangles_;
+  const TrianglesAtPoints triangles_;
   std::vector<int> column_;    ///< of each unknown in the star's matrix, or -1
   std::vector<int> own_;       ///< the unknowns of the star
   std::vector<Place> places_;  ///< of its triangles' functions

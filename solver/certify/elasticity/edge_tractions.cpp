@@ -6,6 +6,7 @@
 #include "fem/couple.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
+#include "mesh/triangles_at_points.hpp"
 
 namespace signorini {
 namespace {
@@ -105,13 +106,12 @@ void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
 
 /// The flux of the stream function around each point balances the moments of every triangle there.
 void EdgeTractions::balance(const Eigen::Matrix3Xd& moments) {
-  const auto triangles = triangles_at_points(discrete_.mesh);
-  for (int point = 0; point < static_cast<int>(triangles.size()); ++point)
+  const TrianglesAtPoints triangles(discrete_.mesh);
+  for (int point = 0; point < static_cast<int>(discrete_.mesh.points.size()); ++point)
     turn_around(point, triangles[point], moments);
 }
 
-void EdgeTractions::turn_around(int point, const std::vector<int>& triangles,
-                                const Eigen::Matrix3Xd& moments) {
+void EdgeTractions::turn_around(int point, std::span<const int> triangles, const Eigen::Matrix3Xd& moments) {
   if (triangles.empty()) return;
   const Mesh& mesh = discrete_.mesh;
   int start = triangles[0];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,7 @@ class EdgeTractions {
   void change_pressure(const ContactPressure& pressure);
   void take_couples(Eigen::Matrix3Xd& moments);
   void balance(const Eigen::Matrix3Xd& moments);
-  void turn_around(int point, const std::vector<int>& triangles, const Eigen::Matrix3Xd& moments);
+  void turn_around(int point, std::span<const int> triangles, const Eigen::Matrix3Xd& moments);
 
   const Discretization& discrete_;
   const TractionField& given_;

@@ -260,26 +260,22 @@ void Extensions::complete(Eigen::MatrixXd& w) const {
 /// Of a triangle that is not turned, from what its corners move by beside the first: of a motion of the whole
 /// nothing is left.
 template <int D>
-double Extensions::energy_square(const Eigen::MatrixXd& w) const {
-  double sum = 0;
-  for (int t = 0; t < discrete_.triangles(); ++t) {
-    progress_.check_in(t);
-    auto own = local<D>(t, w);
-    if (own.isZero(0)) continue;
-    if (!is_turned_[t])
-      for (int z = 2; z >= 0; --z) own.template segment<D>(D * z) -= own.template head<D>();
-    const Eigen::Map<const Eigen::Matrix<double, 3 * D, 3 * D>> matrix(stiffness_.matrix(t));
-    sum += own.dot(matrix * own);
-  }
-  return sum;
+double Extensions::energy_square(int t, const Eigen::MatrixXd& w) const {
+  auto own = local<D>(t, w);
+  if (own.isZero(0)) return 0;
+  if (!is_turned_[t])
+    for (int z = 2; z >= 0; --z) own.template segment<D>(D * z) -= own.template head<D>();
+  const Eigen::Map<const Eigen::Matrix<double, 3 * D, 3 * D>> matrix(stiffness_.matrix(t));
+  return own.dot(matrix * own);
+}
+
+double Extensions::energy_square(int t, const Eigen::MatrixXd& w) const {
+  return components() == 1 ? energy_square<1>(t, w) : energy_square<2>(t, w);
 }
 
 /// From values in the directions of the unknowns.
-Extension Extensions::finished(Extension own) const {
-  own.energy_square = components() == 1 ? energy_square<1>(own.at_points) : energy_square<2>(own.at_points);
-  for (const auto& [point, turn] : turns_)
-    own.at_points.col(point) = (turn * own.at_points.col(point)).eval();
-  return own;
+void Extensions::turn_back(Eigen::MatrixXd& w) const {
+  for (const auto& [point, turn] : turns_) w.col(point) = (turn * w.col(point)).eval();
 }
 
 std::vector<Extension::Clash> Extensions::clashes(const std::vector<int>& moved, const Given& given) const {
@@ -295,17 +291,40 @@ Extension Extensions::operator()(const std::vector<int>& moved, const Given& giv
     complete<1>(own.at_points);
   else
     complete<2>(own.at_points);
-  return finished(std::move(own));
+  for (int t = 0; t < discrete_.triangles(); ++t) {
+    progress_.check_in(t);
+    own.energy_square += energy_square(t, own.at_points);
+  }
+  turn_back(own.at_points);
+  return own;
 }
 
-Extension Extensions::tent(int part, const Given& given, const Hat& hat) const {
+Extension Extensions::tent(int part, const Given& given, const Hat& hat,
+                           const TrianglesAtPoints& around) const {
+  const Mesh& mesh = discrete_.mesh;
   Extension own;
   own.at_points = held({part}, given, own.clashes);
-  const std::vector<Point>& points = discrete_.mesh.points;
-  for (int point = 0; point < static_cast<int>(points.size()); ++point)
-    if (const double height = hat(points[point]); height > 0 && !holds_.contains(point))
-      own.at_points.col(point) = height * hat.top.head(components());
-  return finished(std::move(own));
+  std::vector<int> raised;
+  for (const auto& [point, holds] : holds_)
+    if (!own.at_points.col(point).isZero(0)) raised.push_back(point);
+  std::vector<bool> is_under(mesh.triangles.size());
+  std::vector<int> under;
+  for (std::size_t i = 0; i < raised.size(); ++i)
+    for (const int t : around[raised[i]]) {
+      if (is_under[t]) continue;
+      is_under[t] = true;
+      under.push_back(t);
+      for (const int point : mesh.triangles[t]) {
+        if (holds_.contains(point) || !own.at_points.col(point).isZero(0)) continue;
+        const double height = hat(mesh.points[point]);
+        if (!(height > 0)) continue;
+        own.at_points.col(point) = height * hat.top.head(components());
+        raised.push_back(point);
+      }
+    }
+  for (const int t : under) own.energy_square += energy_square(t, own.at_points);
+  turn_back(own.at_points);
+  return own;
 }
 
 }  // namespace signorini

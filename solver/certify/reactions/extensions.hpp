@@ -7,6 +7,7 @@
 
 #include "certify/data/law_pieces.hpp"
 #include "fem/discretization.hpp"
+#include "mesh/triangles_at_points.hpp"
 #include "problem/settings.hpp"
 #include "system/element_sum.hpp"
 #include "system/factor.hpp"
@@ -53,9 +54,9 @@ class Extensions {
 
     double operator()(const Point& x) const;
   };
-  /// What is given on a part, 0 on all other supports, and beside them a hat: not of the least energy, but
-  /// without a solve.
-  Extension tent(int part, const Given& given, const Hat& hat) const;
+  /// What is given on a part, 0 on all other supports, and beside them a hat as far as it hangs together with
+  /// what is given: not of the least energy, but without a solve, and where it is 0 without a look.
+  Extension tent(int part, const Given& given, const Hat& hat, const TrianglesAtPoints& around) const;
 
  private:
   /// What a support holds in a point.
@@ -79,8 +80,9 @@ class Extensions {
   template <int D>
   void complete(Eigen::MatrixXd& w) const;
   template <int D>
-  double energy_square(const Eigen::MatrixXd& w) const;
-  Extension finished(Extension own) const;
+  double energy_square(int t, const Eigen::MatrixXd& w) const;
+  double energy_square(int t, const Eigen::MatrixXd& w) const;
+  void turn_back(Eigen::MatrixXd& w) const;
 
   const Discretization& discrete_;
   Progress& progress_;
