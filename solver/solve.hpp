@@ -35,24 +35,26 @@ inline constexpr const char* paper_form_needs_one_mesh =
 /// it may become, and the sizes are rough too.
 Estimate estimate(const Problem& problem, Factorization by = Factorization::multifrontal);
 
-/// The same for every run of a study, in the order in which they are solved. It ends behind the run with
-/// which they have more stress unknowns together than `enough`.
-std::vector<Estimate> estimate(const Problem& problem, const Study& study,
-                               Factorization by = Factorization::multifrontal,
-                               std::int64_t enough = std::numeric_limits<std::int64_t>::max());
-
 /// The same by a method, with so many entries of a sweep.
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries = 0);
 
 /// How often a sweep makes the operator of another material.
 std::size_t operators_of(const std::vector<Variation>& sweep);
 
-/// The problem with its sweep, by a method: memory while the operator of the material that takes most is
-/// made, and seconds of all operators.
-Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings);
+/// Of all that a request asks for.
+struct Estimates {
+  Estimate problem;  ///< with its sweep: memory by the material that takes most, all operators' seconds
+  std::vector<Estimate> runs;  ///< of its study, in the order in which they are solved
 
-/// Bytes of the problem and of the runs of its study, which are solved one after another beside its solution.
-double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs);
+  /// Of them together: the runs are solved one after another beside the problem's solution.
+  double memory_bytes() const;
+};
+
+/// By a method, with a sweep or a study. The runs end with the one that makes their stress unknowns more than
+/// `enough`.
+Estimates estimate(const Problem& problem, const std::vector<Variation>& sweep,
+                   const std::optional<Study>& study, const Settings& settings,
+                   std::int64_t enough = std::numeric_limits<std::int64_t>::max());
 
 /// Every fault of the problem, and where the method cannot do what it asks for.
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);

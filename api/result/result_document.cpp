@@ -31,17 +31,15 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   out.end_object();
 }
 
-void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::vector<Estimate>& runs,
-                    const std::vector<std::string>& left) {
-  double seconds = estimate.seconds;
+void write_estimates(DocumentWriter& out, const Estimates& foreseen, const std::vector<std::string>& left) {
+  const auto& [problem, runs] = foreseen;
+  double seconds = problem.seconds;
   for (const Estimate& run : runs) seconds += run.seconds;
-  out.begin_object().member("valid", true).member("triangles", estimate.triangles);
-  write_unknowns(out.key("unknowns"), estimate.unknowns);
-  out.member("system", estimate.system);
+  out.begin_object().member("valid", true).member("triangles", problem.triangles);
+  write_unknowns(out.key("unknowns"), problem.unknowns);
+  out.member("system", problem.system);
   out.key("estimated").begin_object();
-  out.member("memory_bytes", std::round(memory_with_study(estimate, runs)))
-      .member("seconds", seconds)
-      .end_object();
+  out.member("memory_bytes", std::round(foreseen.memory_bytes())).member("seconds", seconds).end_object();
   if (!runs.empty()) out.member("study_runs", runs.size());
   if (!left.empty()) out.key("notes").texts(left);
   out.end_object();

@@ -47,9 +47,8 @@ struct ResultHead {
 void write_result(DocumentWriter& out, const ResultHead& head, const Solution& solution,
                   const ResultFields& fields);
 
-/// What POST /v1/validate answers for a problem without faults; `runs` are those of its study, `left` says
-/// what is left to the solve.
-void write_estimate(DocumentWriter& out, const Estimate& estimate, const std::vector<Estimate>& runs,
-                    const std::vector<std::string>& left = {});
+/// What POST /v1/validate answers for a problem without faults; `left` says what is left to the solve.
+void write_estimates(DocumentWriter& out, const Estimates& foreseen,
+                     const std::vector<std::string>& left = {});
 
 }  // namespace signorini::api

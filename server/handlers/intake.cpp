@@ -60,7 +60,7 @@ HttpError too_large(const std::string& kind, const std::string& what, const std:
 }
 
 void require_few_unknowns(const Intake& intake, const Limits& limits) {
-  const std::int64_t unknowns = intake.estimate.unknowns.stress;
+  const std::int64_t unknowns = intake.foreseen.problem.unknowns.stress;
   if (unknowns <= limits.max_unknowns) return;
   const bool grows = intake.request.problem.mesh.adaptive.has_value();
   throw too_large("too-many-unknowns", "The problem", grows ? "/mesh/adaptive/max_triangles" : "/mesh",
@@ -91,7 +91,7 @@ void require_little_memory(const Intake& intake, const Limits& limits, const Ide
 /// What a sweep holds are the contact unknowns of its entries; and each material is as much work as a
 /// problem.
 void require_short_sweep(const Intake& intake, const Limits& limits) {
-  const Unknowns& unknowns = intake.estimate.unknowns;
+  const Unknowns& unknowns = intake.foreseen.problem.unknowns;
   const auto entries = static_cast<std::int64_t>(intake.request.sweep.size());
   const auto operators = static_cast<std::int64_t>(1 + operators_of(intake.request.sweep));
   const std::int64_t of_contact = entries * unknowns.contact, of_stress = operators * unknowns.stress;
@@ -110,7 +110,7 @@ void require_short_sweep(const Intake& intake, const Limits& limits) {
 /// The runs follow each other, but their times add up.
 void require_short_study(const Intake& intake, const Limits& limits) {
   std::int64_t unknowns = 0;
-  for (const Estimate& run : intake.runs) unknowns += run.unknowns.stress;
+  for (const Estimate& run : intake.foreseen.runs) unknowns += run.unknowns.stress;
   if (unknowns <= limits.max_unknowns) return;
   const Study& study = *intake.request.study;
   throw too_large(
@@ -141,13 +141,10 @@ Intake judge(std::string text, const Request& request, const Limits& limits) {
   intake.request = api::parse_request(intake.text, &observer);
   intake.request.settings.factorization = limits.factorization;
   observer.check();
-  intake.estimate = estimate(intake.request.problem, intake.request.sweep, intake.request.settings);
+  intake.foreseen = estimate(intake.request.problem, intake.request.sweep, intake.request.study,
+                             intake.request.settings, limits.max_unknowns);
   require_few_unknowns(intake, limits);
   require_short_sweep(intake, limits);
-  if (intake.request.study)
-    intake.runs =
-        estimate(intake.request.problem, *intake.request.study, limits.factorization, limits.max_unknowns);
-  for (Estimate& run : intake.runs) run = for_solve(run, intake.request.settings);
   require_short_study(intake, limits);
   require_little_memory(intake, limits, request.identity);
   return intake;
@@ -162,7 +159,7 @@ ReleasedMemory::~ReleasedMemory() {
 }
 
 double Intake::memory() const {
-  return memory_with_study(estimate, runs);
+  return foreseen.memory_bytes();
 }
 
 Intake take_in(Service& service, const Request& request) {

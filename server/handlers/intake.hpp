@@ -15,8 +15,7 @@ namespace signorini::server {
 struct Intake {
   std::string text;  ///< as JSON
   api::Request request;
-  Estimate estimate;
-  std::vector<Estimate> runs;  ///< of its study
+  Estimates foreseen;
 
   /// Bytes that solving it will take, about: the runs of a study follow each other.
   double memory() const;

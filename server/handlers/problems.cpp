@@ -36,10 +36,9 @@ Response validate_problem(Service& service, const Request& request) {
   allow_only(request.query, {});
   const Intake intake = take_in(service, request);
   const std::vector<std::string> left = look_ahead(intake.request.problem, intake.request.sweep);
-  return document_response(request, 200,
-                           [estimate = intake.estimate, runs = intake.runs, left](api::DocumentWriter& out) {
-                             api::write_estimate(out, estimate, runs, left);
-                           });
+  return document_response(request, 200, [foreseen = intake.foreseen, left](api::DocumentWriter& out) {
+    api::write_estimates(out, foreseen, left);
+  });
 }
 
 Response list_examples(Service&, const Request& request) {

@@ -104,10 +104,8 @@ void Scheduler::count_memory(const Claim& claim) {
   try {
     api::Request request = api::parse_request(*claim.problem);
     request.settings.factorization = by_;
-    auto runs = request.study ? estimate(request.problem, *request.study, by_) : std::vector<Estimate>();
-    for (Estimate& each : runs) each = for_solve(each, request.settings);
-    const Estimate problem = estimate(request.problem, request.sweep, request.settings);
-    memory_.add(claim.job.id, memory_with_study(problem, runs), claim.job.owner);
+    const Estimates foreseen = estimate(request.problem, request.sweep, request.study, request.settings);
+    memory_.add(claim.job.id, foreseen.memory_bytes(), claim.job.owner);
   } catch (const std::exception&) {
     // The run says what is wrong with the problem.
   }

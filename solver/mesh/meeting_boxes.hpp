@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -29,19 +30,26 @@ inline bool is_within(const Point& x, const Box& box) {
   return (x.array() >= box.low.array()).all() && (x.array() <= box.high.array()).all();
 }
 
-/// The number of pairs of boxes that have a coordinate (0 or 1) in common.
+/// The number of pairs of boxes that have a coordinate (0 or 1) in common, and those that nearly do: boxes
+/// begin and end in one of so many slices.
 inline std::size_t pairs_sharing(const std::vector<Box>& boxes, int coordinate) {
-  std::vector<double> low, high;
+  constexpr int slices = 4096;
+  double lowest = boxes[0].low[coordinate], highest = boxes[0].high[coordinate];
   for (const Box& box : boxes) {
-    low.push_back(box.low[coordinate]);
-    high.push_back(box.high[coordinate]);
+    lowest = std::min(lowest, box.low[coordinate]);
+    highest = std::max(highest, box.high[coordinate]);
   }
-  std::ranges::sort(low);
-  std::ranges::sort(high);
-  std::size_t apart = 0, ended = 0;
-  for (const double begin : low) {
-    while (high[ended] < begin) ++ended;
-    apart += ended;
+  const double width = highest > lowest ? highest - lowest : 1;
+  const auto slice_of = [&](double x) { return static_cast<int>((x - lowest) / width * (slices - 1)); };
+  std::array<std::size_t, slices> begun{}, ended{};
+  for (const Box& box : boxes) {
+    ++begun[slice_of(box.low[coordinate])];
+    ++ended[slice_of(box.high[coordinate])];
+  }
+  std::size_t apart = 0, before = 0;
+  for (int slice = 0; slice < slices; ++slice) {
+    apart += begun[slice] * before;
+    before += ended[slice];
   }
   return boxes.size() * (boxes.size() - 1) / 2 - apart;
 }

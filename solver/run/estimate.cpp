@@ -75,7 +75,9 @@ enum class Shows { itself, another };
 /// common.
 class Estimation {
  public:
-  Estimation(const Problem& problem, Factorization by) : problem_(problem), by_(by) {
+  /// `predicted`: of the domain's meshes that are not there; null for estimates on one that is.
+  Estimation(const Problem& problem, Factorization by, const PredictedSizes* predicted)
+      : problem_(problem), by_(by), predicted_(predicted) {
     for (const std::string& name : part_names(problem_.domain)) {
       const auto condition = problem_.boundary.find(name);
       conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
@@ -123,12 +125,12 @@ class Estimation {
 
   Problem problem_;
   const Factorization by_;
-  std::optional<const PredictedSizes> predicted_;  ///< of meshes that are not there
-  std::vector<const Condition*> conditions_;       ///< of the parts
-  std::vector<int> chains_;                        ///< of the parts, at most: each has a node more than edges
-  std::int64_t may_be_made_ = few_triangles;       ///< together, of meshes that are made to be counted
-  std::int64_t may_be_cut_ = 2 * most_cut;         ///< of those, and of their refinements
-  std::optional<MeshPieces> pieces_;               ///< of a mesh that is made, or given
+  const PredictedSizes* const predicted_;
+  std::vector<const Condition*> conditions_;  ///< of the parts
+  std::vector<int> chains_;                   ///< of the parts, at most: each has a node more than edges
+  std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
+  std::int64_t may_be_cut_ = 2 * most_cut;    ///< of those, and of their refinements
+  std::optional<MeshPieces> pieces_;          ///< of a mesh that is made, or given
 };
 
 /// The pieces of a mesh; `edges_of(part)` has pairs of points.
@@ -240,7 +242,6 @@ std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
 /// Of the mesh that the problem asks for. Small ones are made.
 Counts Estimation::count() {
   std::optional<Mesh> mesh;
-  if (!predicted_) predicted_.emplace(problem_.domain);
   MeshSizes sizes = (*predicted_)(problem_.mesh);
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
   const std::optional<Coarser> coarse =
@@ -304,6 +305,11 @@ Counts grown(const Counts& start, const Adaptive& goal) {
           start.across};
 }
 
+std::int64_t stress_unknowns(const Spaces& spaces, const Counts& counts) {
+  const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
+  return counts.edges * spaces.traces_per_edge() + counts.triangles * inner;
+}
+
 Estimate Estimation::operator()() {
   const Counts counts = count();
   return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts);
@@ -316,12 +322,10 @@ Estimate Estimation::operator()(const Mesh& mesh) {
 
 Estimate Estimation::estimate_of(const Counts& counts) const {
   const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
-  const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
   Estimate estimate;
   estimate.triangles = counts.triangles;
-  estimate.unknowns = {counts.edges * spaces.traces_per_edge() + counts.triangles * inner,
-                       counts.triangles * spaces.displacements(), counts.contact_unknowns,
-                       spaces.rotations() ? counts.points : 0};
+  estimate.unknowns = {stress_unknowns(spaces, counts), counts.triangles * spaces.displacements(),
+                       counts.contact_unknowns, spaces.rotations() ? counts.points : 0};
   const std::int64_t held =
       (spaces.components * counts.fixed_edges + counts.normal_edges) * (spaces.order + 1);
   estimate.system =
@@ -355,11 +359,12 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
 }  // namespace
 
 Estimate estimate(const Problem& problem, Factorization by) {
-  return Estimation(problem, by)();
+  const PredictedSizes predicted(problem.domain);
+  return Estimation(problem, by, &predicted)();
 }
 
 Estimate estimate(const Problem& problem, const Mesh& mesh, Factorization by) {
-  return Estimation(problem, by)(mesh);
+  return Estimation(problem, by, nullptr)(mesh);
 }
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
@@ -386,8 +391,11 @@ std::size_t operators_of(const std::vector<Variation>& sweep) {
   return count;
 }
 
-Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings) {
-  Estimate most = estimate(problem, settings.factorization);
+namespace {
+
+Estimate with_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
+                    const PredictedSizes& predicted) {
+  Estimate most = Estimation(problem, settings.factorization, &predicted)();
   // Each entry encloses the quantities, but only another material makes an operator.
   const double quantities = seconds_of_quantities(problem, static_cast<double>(most.triangles));
   most.seconds = (most.seconds - quantities) * static_cast<double>(1 + operators_of(sweep)) +
@@ -400,26 +408,20 @@ Estimate estimate(const Problem& problem, const std::vector<Variation>& sweep, c
   if (found != sweep.end() && is_constant(problem.material)) {
     Problem varied = problem;
     apply(*found, problem, varied);
-    const Estimate with_it = estimate(varied, settings.factorization);
+    const Estimate with_it = Estimation(varied, settings.factorization, &predicted)();
     most.memory_bytes = std::max(most.memory_bytes, with_it.memory_bytes);
     most.paper_form_bytes = std::max(most.paper_form_bytes, with_it.paper_form_bytes);
   }
   return for_solve(most, settings, sweep.size());
 }
 
-double memory_with_study(const Estimate& problem, const std::vector<Estimate>& runs) {
-  double bytes = problem.memory_bytes;
-  for (const Estimate& run : runs) bytes = std::max(bytes, problem.solution_bytes + run.memory_bytes);
-  return bytes;
-}
-
 /// Of the inf-sup constant, a stress unknown, as measured.
 constexpr double seconds_of_inf_sup = 2.5e-5;
 
-std::vector<Estimate> estimate(const Problem& problem, const Study& study, Factorization by,
-                               std::int64_t enough) {
+std::vector<Estimate> of_runs(const Problem& problem, const Study& study, Factorization by,
+                              const PredictedSizes& predicted, std::int64_t enough) {
   std::vector<Estimate> runs;
-  Estimation estimation(problem, by);
+  Estimation estimation(problem, by, &predicted);
   for (const Scheme scheme : study.schemes)
     for (const StudyMesh& mesh : study.meshes) {
       Estimate& run = runs.emplace_back(estimation(mesh.request, scheme));
@@ -434,6 +436,36 @@ std::vector<Estimate> estimate(const Problem& problem, const Study& study, Facto
       if (enough < 0) return runs;
     }
   return runs;
+}
+
+}  // namespace
+
+std::int64_t most_stress_unknowns(const Problem& problem, const Study& study) {
+  const PredictedSizes predicted(problem.domain);
+  std::int64_t most = 0;
+  for (const StudyMesh& mesh : study.meshes) {
+    const MeshSizes sizes = refined(predicted(mesh.request), mesh.request.refine);
+    Counts counts{sizes.triangles, sizes.edges, sizes.points};
+    if (mesh.request.adaptive) counts = grown(counts, *mesh.request.adaptive);
+    for (const Scheme scheme : study.schemes)
+      most = std::max(most, stress_unknowns(spaces_of(scheme, components(problem.material)), counts));
+  }
+  return most;
+}
+
+Estimates estimate(const Problem& problem, const std::vector<Variation>& sweep,
+                   const std::optional<Study>& study, const Settings& settings, std::int64_t enough) {
+  const PredictedSizes predicted(problem.domain);
+  Estimates estimates{with_sweep(problem, sweep, settings, predicted), {}};
+  if (study) estimates.runs = of_runs(problem, *study, settings.factorization, predicted, enough);
+  for (Estimate& run : estimates.runs) run = for_solve(run, settings);
+  return estimates;
+}
+
+double Estimates::memory_bytes() const {
+  double bytes = problem.memory_bytes;
+  for (const Estimate& run : runs) bytes = std::max(bytes, problem.solution_bytes + run.memory_bytes);
+  return bytes;
 }
 
 }  // namespace signorini

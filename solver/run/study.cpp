@@ -8,6 +8,7 @@
 #include "mesh/domain_mesh.hpp"
 #include "progress/progress.hpp"
 #include "result/true_errors.hpp"
+#include "run/estimate.hpp"
 #include "run/inf_sup_check.hpp"
 #include "solve.hpp"
 
@@ -138,7 +139,8 @@ std::optional<Measured> measured(const StudyRow& row, const RowNumber& number) {
 std::vector<Fault> meshes_too_large_for_inf_sup(const Problem& problem, const Study& study,
                                                 const Settings& settings) {
   std::vector<Fault> faults;
-  const std::vector<Estimate> runs = estimate(problem, study, settings.factorization);
+  if (!too_large_for_inf_sup(most_stress_unknowns(problem, study))) return faults;
+  const std::vector<Estimate> runs = estimate(problem, {}, study, settings).runs;
   for (std::size_t i = 0; i < study.meshes.size(); ++i) {
     std::int64_t most = 0;
     for (std::size_t run = i; run < runs.size(); run += study.meshes.size())

@@ -255,7 +255,9 @@ TEST(WriteEstimate, HasSizesAndCosts) {
   estimate.system = 400;
   estimate.memory_bytes = 1234567.8;
   estimate.seconds = 0.25;
-  EXPECT_EQ(json::parse(text_of([&](DocumentWriter& out) { write_estimate(out, estimate, {}); })),
+  EXPECT_EQ(json::parse(text_of([&](DocumentWriter& out) {
+              write_estimates(out, {estimate, {}});
+            })),
             json::parse(R"({"valid": true, "triangles": 288,
     "unknowns": {"stress": 456, "displacement": 0, "contact": 0, "rotation": 0}, "system": 400,
     "estimated": {"memory_bytes": 1234568, "seconds": 0.25}})"));

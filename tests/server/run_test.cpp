@@ -49,8 +49,7 @@ TEST(Run, CountsTheMemoryOfItsStudy) {
   const api::Request request = api::parse_request(problem.dump());
   Observer indifferent;
   const auto peak = static_cast<double>(solve_alone(request, indifferent).summary.peak_memory_bytes);
-  const double predicted =
-      memory_with_study(estimate(request.problem), estimate(request.problem, *request.study));
+  const double predicted = estimate(request.problem, {}, request.study, request.settings).memory_bytes();
   EXPECT_LE(peak, predicted);
   EXPECT_GE(peak, predicted / 2);
 }

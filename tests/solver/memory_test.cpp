@@ -384,11 +384,11 @@ TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
   Observer indifferent;
   const Settings settings{ActiveSet{}, std::nullopt};
   const Solution solution = solve(problem, sweep, settings, indifferent, shelf);
-  const double predicted = estimate(problem, sweep, settings).memory_bytes;
+  const double predicted = estimate(problem, sweep, {}, settings).problem.memory_bytes;
   const auto peak = static_cast<double>(solution.summary.peak_memory_bytes);
   EXPECT_LE(peak, predicted);
   EXPECT_GE(peak + tables_of_laws, predicted / 2);
-  EXPECT_NEAR(estimate(problem, sweep, settings).seconds, 3 * estimate(problem).seconds, 1e-12);
+  EXPECT_NEAR(estimate(problem, sweep, {}, settings).problem.seconds, 3 * estimate(problem).seconds, 1e-12);
 }
 
 /// One after another, beside the solution of the problem itself; the largest is not the last.
@@ -398,9 +398,7 @@ TEST_P(Memory, OfAStudyIsThatOfItsLargestRun) {
     study.schemes = {GetParam()};
     for (const MeshRequest& mesh : meshes) study.meshes.push_back({"", mesh});
     const Settings settings{ActiveSet{}, std::nullopt};
-    std::vector<Estimate> runs = estimate(problem, study);
-    for (Estimate& run : runs) run = for_solve(run, settings);
-    const double predicted = memory_with_study(for_solve(estimate(problem), settings), runs);
+    const double predicted = estimate(problem, {}, study, settings).memory_bytes();
     Observer indifferent;
     const MemoryMeter meter;
     const Solution solution = solve(problem, settings);
@@ -433,7 +431,7 @@ TEST_P(Memory, OfAStudyThatChecksTheInfSupCondition) {
     const MemoryMeter meter;
     for (const StudyRow& row : run_study(problem, study, {ActiveSet{}, {}}, indifferent))
       EXPECT_EQ(row.error, "");
-    const double predicted = for_solve(estimate(problem, study)[0], {ActiveSet{}, {}}).memory_bytes;
+    const double predicted = estimate(problem, {}, study, {ActiveSet{}, {}}).runs[0].memory_bytes;
     const auto peak = static_cast<double>(meter.peak());
     EXPECT_LE(peak, predicted);
     // The size of a polygon's mesh is not known exactly.

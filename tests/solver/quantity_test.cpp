@@ -151,7 +151,7 @@ TEST(QuantityOfABlock, IsForeseenInSeconds) {
       EXPECT_LE(taken, 5 * foreseen) << quantities[0].name;
       EXPECT_GE(taken, foreseen / 5) << quantities[0].name;
       const std::vector<Variation> sweep(10, Variation{"", problem.body, problem.boundary, ""});
-      EXPECT_NEAR(estimate(problem, sweep, {}).seconds, estimated_without + 11 * foreseen, 1e-9);
+      EXPECT_NEAR(estimate(problem, sweep, {}, {}).problem.seconds, estimated_without + 11 * foreseen, 1e-9);
     }
 }
 
@@ -431,7 +431,7 @@ TEST(QuantitiesOfASweep, AreForeseenInMemory) {
       problem.quantities.push_back(mean_in("m" + std::to_string(i), VectorField(Field(0), formula("x*y"))));
     const std::vector<Variation> sweep(3, Variation{"", problem.body, problem.boundary, ""});
     const auto peak = static_cast<double>(solved(problem, sweep).summary.peak_memory_bytes);
-    const double foreseen = estimate(problem, sweep, {ActiveSet{}, {}}).memory_bytes;
+    const double foreseen = estimate(problem, sweep, {}, {ActiveSet{}, {}}).problem.memory_bytes;
     EXPECT_LE(peak, foreseen) << count;
     EXPECT_GE(2 * peak, foreseen) << count;
   }
