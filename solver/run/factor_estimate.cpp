@@ -44,14 +44,15 @@ struct Direction {
 /// squares.
 constexpr double kThrough = 1.5, kRagged = 1.3;
 
-/// Of all pieces of a level so many differ from each other where squares have one material: by the sides that
-/// they have on the boundary, and the order in which the others are cut. As measured of thousands of squares.
-double different_pieces(int level) {
-  return std::min(std::exp2(level), 12. + 4 * level);
+/// Of all pieces of a level so many differ from each other where squares are of so many kinds: by the sides
+/// that they have on the boundary, and the order in which the others are cut. As measured of thousands of
+/// squares.
+double different_pieces(int level, int kinds) {
+  return kinds == 0 ? std::exp2(level) : std::min(std::exp2(level), kinds * (12. + 4 * level));
 }
 
 /// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
-FactorBytes of_squares(Direction x, Direction y, bool is_regular, bool is_uniform, const Spaces& spaces,
+FactorBytes of_squares(Direction x, Direction y, bool is_regular, int kinds, const Spaces& spaces,
                        double all_triangles, double contact) {
   constexpr double least_in_leaf = 8;
   const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
@@ -65,16 +66,15 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, bool is_unifor
     const bool are_few = triangles < ShortCut::kFew;
     const bool along_x = are_few ? x.extent() >= y.extent() : x.squares >= y.squares;
     Direction& longer = along_x ? x : y;
-    const bool between_squares = is_regular && (!are_few || std::fmod(longer.squares, 2) == 0);
     double pivots = 0;
     if (level < levels) {
-      pivots = (between_squares ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
+      pivots = (is_regular ? 1 : kThrough) * (along_x ? y : x).squares * (per_edge + per_point);
     } else {
       pivots =
           std::max(0., (3 * triangles - sides) / 2 * per_edge + ((triangles - sides) / 2 + 1) * per_point);
     }
     const double rest = sides * (per_edge + per_point) + contact / pieces;
-    const double kept = is_uniform ? different_pieces(level) : pieces;
+    const double kept = different_pieces(level, kinds);
     all.panels += kValue * kept * pivots * (pivots + rest);
     all.fronts += kUnknown * pieces * (pivots + rest);
     // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
@@ -82,7 +82,7 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, bool is_unifor
         ragged_x * x.most_inner_sides() * y.squares + ragged_y * y.most_inner_sides() * x.squares;
     const double largest = most * (per_edge + per_point) + contact / x.pieces;
     all.stacks += kValue * (level > 0 ? 2 : 1) * largest * largest;
-    longer.halve(between_squares);
+    longer.halve(is_regular);
   }
   return all;
 }
@@ -129,8 +129,8 @@ std::array<int, 2> ascending(const std::array<int, 2>& edge) {
 }  // namespace
 
 FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns) {
-  return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular,
-                    grid.is_uniform, spaces, triangles, contact_unknowns);
+  return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular, grid.kinds,
+                    spaces, triangles, contact_unknowns);
 }
 
 MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
@@ -231,7 +231,7 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
 FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double triangles,
                                double contact) const {
   const double x = std::sqrt(triangles / 2 * leaf.across), y = triangles / 2 / x;
-  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, false, spaces,
+  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, 0, spaces,
                     triangles, contact);
 }
 

@@ -22,7 +22,8 @@ struct Grid {
   double x, y;
   double width, height;  ///< of a square
   bool is_regular;       ///< that cuts may go between squares
-  bool is_uniform;  ///< of one material: pieces that are alike are kept once (system/repeated_pieces.hpp)
+  int kinds;             ///< of squares, two where diagonals alternate: pieces that are alike are kept once
+                         ///< (system/repeated_pieces.hpp); 0 where none are, as their materials differ
 };
 
 /// From a formula for a dissection of squares.

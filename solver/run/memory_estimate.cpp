@@ -40,24 +40,23 @@ bool has_few_values(const VectorField& field) {
 }
 
 /// Where a mesh refines itself is not known. It does so in a few places, which are cheaper to cut than a grid
-/// that is as fine everywhere. Where diagonals alternate, pieces are alike if the squares can be halved often
-/// enough, but mostly hardly any are.
+/// that is as fine everywhere.
 Grid grid_of(const Problem& problem, double triangles, bool repeated) {
   if (!std::holds_alternative<Rectangle>(problem.domain)) {
     const double n = std::sqrt(triangles / 2);
-    return {n, n, 1, 1, false, false};
+    return {n, n, 1, 1, false, 0};
   }
   const auto& rectangle = std::get<Rectangle>(problem.domain);
   const auto [x, y] = divisions(rectangle, problem.mesh);
   const double finer =
       problem.mesh.adaptive ? std::sqrt(triangles / 2 / x / y) : std::exp2(problem.mesh.refine);
+  const int kinds = problem.mesh.pattern == Pattern::alternating ? 2 : 1;
   return {finer * x,
           finer * y,
           rectangle.size.x() / (finer * x),
           rectangle.size.y() / (finer * y),
           true,
-          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0 &&
-              problem.mesh.pattern != Pattern::alternating};
+          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0 ? kinds : 0};
 }
 
 /// Cuts through arms that lie side by side may run along one of them: by so many times are their fronts

@@ -16,6 +16,12 @@ constexpr double kOfSquares = 1.25;
 /// Extents that differ by less differ by rounding: pieces that are alike are to be cut alike.
 constexpr double kLonger = 1 + 1e-9;
 
+/// Gaps between centres that differ by less of the extent differ by rounding, or by the tilt.
+constexpr double kWider = 1e-6;
+
+/// Of cuts that are so nearly as good as the best, that of the widest gap is taken.
+constexpr double kNearlyLeast = 1.02;
+
 /// The least part of the elements that a half has.
 constexpr double kLeastHalf = 0.3;
 
@@ -29,9 +35,37 @@ auto before(int along) {
   return [along](const Centre& a, const Centre& b) { return a.at[along] < b.at[along]; };
 }
 
+auto at(std::span<Centre> piece, std::size_t place) {
+  return piece.begin() + static_cast<std::ptrdiff_t>(place);
+}
+
 void divide(std::span<Centre> piece, std::size_t first_half, int along) {
-  std::nth_element(piece.begin(), piece.begin() + static_cast<std::ptrdiff_t>(first_half), piece.end(),
-                   before(along));
+  std::nth_element(piece.begin(), at(piece, first_half), piece.end(), before(along));
+}
+
+/// Between the centres on both sides of a cut, where they are sorted.
+double gap_before(std::span<const Centre> piece, std::size_t cut, int along) {
+  return piece[cut].at[along] - piece[cut - 1].at[along];
+}
+
+/// Divides at the widest gap that is no farther from the median than a column of squares has elements, of
+/// several at the nearest. Of squares that is between two columns, whatever their diagonals: a cut through a
+/// column would be longer, and no piece with a ragged side is like another. Returns the size of the first
+/// half.
+std::size_t divide_between_columns(std::span<Centre> piece, int along, double extent) {
+  const std::size_t size = piece.size(), median = size / 2;
+  const auto column = static_cast<std::size_t>(std::sqrt(2. * static_cast<double>(size)));
+  const std::size_t reach = std::min(size / 6, column), first = median - reach, last = median + reach;
+  divide(piece, median, along);
+  if (reach == 0) return median;
+  divide(piece.first(median), first, along);
+  divide(piece.subspan(median), last - median, along);
+  std::sort(at(piece, first), at(piece, last) + 1, before(along));
+  std::size_t best = median;
+  for (std::size_t away = 1; away < reach; ++away)
+    for (const std::size_t cut : {median - away, median + away})
+      if (gap_before(piece, cut, along) > gap_before(piece, best, along) + kWider * extent) best = cut;
+  return best;
 }
 
 }  // namespace
@@ -63,17 +97,16 @@ ShortCut::ShortCut(const ElementSum& sum, int leaves)
       last_(sum.size) {}
 
 std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
-  const std::size_t middle = piece.size() / 2;
   const Eigen::Vector2d extent = extents(piece);
   const int longer = extent.y() > kLonger * extent.x() ? 1 : 0;
-  divide(piece, middle, longer);
+  const std::size_t middle = divide_between_columns(piece, longer, extent[longer]);
   if (piece.size() < kFew) return middle;
   const double size = static_cast<double>(piece.size()), most = elements_per_leaf_ * leaves;
   // Squares of two triangles, n / 2 in a square, have sqrt(n / 2) sides along the middle.
   const double of_squares = per_side_ * std::sqrt(size / 2 * extent[1 - longer] / extent[longer]);
   if (shared(piece, middle) <= kOfSquares * of_squares) return middle;
-  const auto least_half =
-      std::min(middle, static_cast<std::size_t>(std::max({kLeastHalf * size, most / 4, size - most})));
+  const auto least_half = std::min(
+      piece.size() / 2, static_cast<std::size_t>(std::max({kLeastHalf * size, most / 4, size - most})));
   Cut best = shortest(piece, least_half, longer);
   const Cut other = shortest(piece, least_half, 1 - longer);
   if (other.ratio < best.ratio) best = other;
@@ -99,11 +132,11 @@ int ShortCut::shared(std::span<const Centre> piece, std::size_t first_half) {
 
 /// Of all cuts across an axis.
 ShortCut::Cut ShortCut::shortest(std::span<Centre> piece, std::size_t least, int along) {
-  const std::size_t size = piece.size(), middle = size / 2, most = size - least;
+  const std::size_t size = piece.size(), most = size - least;
+  const double rounding = kWider * extents(piece)[along];
   divide(piece, least, along);
   divide(piece.subspan(least), most - least, along);
-  std::sort(piece.begin() + static_cast<std::ptrdiff_t>(least),
-            piece.begin() + static_cast<std::ptrdiff_t>(most), before(along));
+  std::sort(at(piece, least), at(piece, most), before(along));
   // The places between which cuts may go; all elements before and after them have one each.
   const auto place = [&](std::size_t i) {
     return static_cast<int>(std::clamp(i + 1, least, most + 1) - least);
@@ -129,12 +162,22 @@ ShortCut::Cut ShortCut::shortest(std::span<Centre> piece, std::size_t least, int
     ++more[first_[unknown]];
     --more[last_[unknown]];
   });
-  Cut best{along, middle, std::numeric_limits<double>::infinity()};
+  std::vector<double> ratios;
   int share = 0;
   for (std::size_t cut = least; cut <= most; ++cut) {
     share += more[cut - least];
-    const double ratio = share / (static_cast<double>(cut) * static_cast<double>(size - cut));
-    if (ratio < best.ratio) best = {along, cut, ratio};
+    ratios.push_back(share / (static_cast<double>(cut) * static_cast<double>(size - cut)));
+  }
+  const double enough = kNearlyLeast * *std::ranges::min_element(ratios);
+  Cut best{along, size / 2, std::numeric_limits<double>::infinity()};
+  double widest = -1;
+  for (std::size_t cut = least; cut <= most; ++cut) {
+    const double ratio = ratios[cut - least];
+    if (ratio > enough) continue;
+    const double gap = least < cut && cut < most ? gap_before(piece, cut, along) : 0;
+    if (gap < widest - rounding || (gap <= widest + rounding && ratio >= best.ratio)) continue;
+    widest = gap;
+    best = {along, cut, ratio};
   }
   return best;
 }

@@ -20,13 +20,15 @@ std::vector<Centre> centres_of(const ElementSum& sum);
 
 /// Cuts pieces of a mesh in two, across x or y, so that the halves share few unknowns.
 ///
-/// That is at the median of the longer extent where it is as short as a cut between squares would be. Arms
-/// and long triangles make it longer: then it is the cut with the least ratio of what the halves a, b share
-/// to |a| |b| (the ratio cut of Wei and Cheng 1989), of all those across x and y that leave neither half less
-/// than some third. Leaves have from half to twice the elements that they would have if all had as many.
+/// That is in the widest gap near the median of the longer extent, between squares if there are any, where it
+/// is as short as a cut between squares would be. Arms and long triangles make it longer: then it is the cut
+/// with the least ratio of what the halves a, b share to |a| |b| (the ratio cut of Wei and Cheng 1989), of
+/// all those across x and y that leave neither half less than some third; of those with nearly that ratio,
+/// the one in the widest gap. Leaves have from half to twice the elements that they would have if all had as
+/// many, or nearly.
 class ShortCut {
  public:
-  /// Fewer elements are cut at the median: what is looked for there costs more than it saves.
+  /// Fewer elements are cut near the median: what is looked for elsewhere costs more than it saves.
   static constexpr std::size_t kFew = 128;
 
   ShortCut(const ElementSum& sum, int leaves);

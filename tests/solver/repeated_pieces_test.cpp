@@ -15,9 +15,9 @@ namespace {
 constexpr int kKinds = 3;
 
 /// Squares of two triangles each as elements, an unknown a side, those along the bottom last. `kind` says
-/// which of a few random matrices a triangle has, -1 that it is not there.
-ElementSum squares(int x, int y, const std::function<int(int i, int j, int triangle)>& kind,
-                   double width = 1) {
+/// which of a few random matrices a triangle has, -1 that it is not there. Diagonals may alternate.
+ElementSum squares(int x, int y, const std::function<int(int i, int j, int triangle)>& kind, double width = 1,
+                   bool alternating = false) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<> number(-1, 1);
   ElementSum sum;
@@ -33,11 +33,12 @@ ElementSum squares(int x, int y, const std::function<int(int i, int j, int trian
   };
   std::vector<std::array<int*, 3>> sides;
   const auto add = [&](int i, int j, int triangle) {
-    const int of = kind(i, j, triangle), a = 2 * i + 2 * triangle, b = 2 * j + 2 * triangle;
+    const int right = alternating && (i + j) % 2 == 1 ? 1 - triangle : triangle;
+    const int of = kind(i, j, triangle), a = 2 * i + 2 * right, b = 2 * j + 2 * triangle;
     if (of < 0) return;
     sides.push_back({&side(a, 2 * j + 1), &side(2 * i + 1, b), &side(2 * i + 1, 2 * j + 1)});
     sum.matrix_of.push_back(of);
-    sum.centres.emplace_back(width * (i + (1 + triangle) / 3.), j + (1 + triangle) / 3.);
+    sum.centres.emplace_back(width * (i + (1 + right) / 3.), j + (1 + triangle) / 3.);
   };
   for (int j = 0; j < y; ++j)
     for (int i = 0; i < x; ++i)
@@ -116,6 +117,16 @@ TEST(RepeatedPieces, OfSquaresAreNearlyAll) {
           x, y, [](int, int, int triangle) { return triangle; }, width);
       for (const int trailing : {0, x})
         EXPECT_LE(expect_the_same(sum, trailing), sum.elements() / 16) << x << y << width;
+    }
+}
+
+/// Cuts between squares leave two kinds of each piece, by where its diagonals begin.
+TEST(RepeatedPieces, OfAlternatingSquaresAreNearlyAll) {
+  for (const auto& [x, y] : {std::pair(75, 75), std::pair(62, 127), std::pair(99, 71)})
+    for (const double width : {1., 0.7, 2.}) {
+      const ElementSum sum = squares(
+          x, y, [](int, int, int triangle) { return triangle; }, width, true);
+      EXPECT_LE(expect_the_same(sum, x), sum.elements() / 16) << x << y << width;
     }
 }
 
