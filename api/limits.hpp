@@ -35,5 +35,7 @@ inline constexpr int divisions = 10'000, refinements = 12, triangles = 20'000'00
 inline constexpr std::size_t sweep_entries = 10'000, study_meshes = 64, batch_problems = 1000;
 /// Of all entries of a sweep together, with those that an entry has from the problem.
 inline constexpr std::size_t sweep_conditions = 50'000;
+/// Of all meshes of a study together, local sizes times sides of the polygon.
+inline constexpr std::size_t study_local_sizes = 2'000'000;
 
 }  // namespace signorini::api::limits

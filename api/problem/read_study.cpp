@@ -88,6 +88,14 @@ StudyMesh read_adaptive(const Value& value, json mesh, const Value& study, const
   return {value.pointer(), read_mesh(Value(mesh, study.pointer(), value.faults()), problem.domain)};
 }
 
+std::size_t sides_of(const Domain& domain) {
+  const auto* polygon = std::get_if<Polygon>(&domain);
+  if (!polygon) return 0;
+  std::size_t sides = polygon->vertices.size();
+  for (const auto& hole : polygon->holes) sides += hole.size();
+  return sides;
+}
+
 std::vector<StudyMesh> read_meshes(const Value& value, const Object& study, const Object& document,
                                    const Problem& problem) {
   const json mesh = base_mesh(document);
@@ -97,6 +105,14 @@ std::vector<StudyMesh> read_meshes(const Value& value, const Object& study, cons
     if (const auto member = study.find(name)) {
       const std::vector<Value> entries = member->list("an array of meshes", limits::study_meshes);
       if (member->json().is_array() && member->json().empty()) member->fault("must have at least one entry");
+      if (const std::size_t pairs = entries.size() * problem.mesh.sizes.size() * sides_of(problem.domain);
+          pairs > limits::study_local_sizes) {
+        member->fault("makes " + std::to_string(entries.size()) + " meshes with " +
+                      std::to_string(problem.mesh.sizes.size()) + " local sizes and " +
+                      std::to_string(sides_of(problem.domain)) + " sides each; multiplied, these may be " +
+                      std::to_string(limits::study_local_sizes) + ": take fewer of one of them");
+        continue;
+      }
       for (const Value& entry : entries) meshes.push_back(read_entry(entry, mesh, set_fineness, problem));
     }
   return meshes;

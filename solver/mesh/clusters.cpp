@@ -36,17 +36,15 @@ Kernel::Point_2 moved(const Point& x, const Point& first, std::size_t number) {
 /// Those of Delaunay's triangulation, the shortest first. Each set of points that is apart from the others is
 /// connected with the closest of them by one.
 std::vector<Connection> connections(const std::vector<Point>& points) {
-  Triangulation triangulation;
-  Triangulation::Face_handle near;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto vertex = triangulation.insert(moved(points[i], points[0], i), near);
-    vertex->info() = static_cast<int>(i);
-    near = vertex->face();
-  }
+  std::vector<std::pair<Kernel::Point_2, int>> numbered;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    numbered.emplace_back(moved(points[i], points[0], i), static_cast<int>(i));
+  // All at once, so that they go in in an order in which none is far from the last.
+  Triangulation triangulation(numbered.begin(), numbered.end());
   std::vector<Connection> all;
   for (const auto& [face, side] : triangulation.finite_edges()) {
-    const int from = face->vertex(Triangulation::cw(side))->info(),
-              to = face->vertex(Triangulation::ccw(side))->info();
+    const auto [from, to] = std::minmax(face->vertex(Triangulation::cw(side))->info(),
+                                        face->vertex(Triangulation::ccw(side))->info());
     all.push_back({{from, to}, (points[to] - points[from]).norm()});
   }
   std::ranges::sort(all, {}, [](const Connection& each) { return std::pair(each.distance, each.points); });

@@ -39,8 +39,11 @@ inline std::size_t pairs_sharing(const std::vector<Box>& boxes, int coordinate) 
     lowest = std::min(lowest, box.low[coordinate]);
     highest = std::max(highest, box.high[coordinate]);
   }
-  const double width = highest > lowest ? highest - lowest : 1;
-  const auto slice_of = [&](double x) { return static_cast<int>((x - lowest) / width * (slices - 1)); };
+  // Not a number where the boxes are wider than numbers go.
+  const auto slice_of = [&](double x) {
+    const double share = (x - lowest) / (highest - lowest);
+    return share > 0 ? static_cast<int>(std::min(share, 1.) * (slices - 1)) : 0;
+  };
   std::array<std::size_t, slices> begun{}, ended{};
   for (const Box& box : boxes) {
     ++begun[slice_of(box.low[coordinate])];

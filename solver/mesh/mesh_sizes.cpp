@@ -167,13 +167,14 @@ class PredictedSizes::OfPolygon {
       if (rings_.circle[edge] >= 0) chords[part] += pieces;
     };
     for (const NarrowPlaces::Stretch& stretch : stretches_) {
-      const Pieces pieces(stretch, size);
+      Pieces pieces(stretch, size);
+      pieces.count *= stretch.parts;
       add(stretch.edge, pieces.count);
       if (pieces.reach_across)
         across += kTrianglesAcross * pieces.count;
       else
         triangles += pieces.count * (2 * pieces.length >= size ? kTrianglesByEdge : kTrianglesByShortEdge);
-      along_it += stretch.length * 0.5 *
+      along_it += stretch.parts * stretch.length * 0.5 *
                   (pieces.reach_across ? stretch.width : std::min(kHeight * pieces.length, stretch.width));
     }
     for (const Tip& tip : tips_)

@@ -23,6 +23,18 @@ struct Edge {
     return from_begin - std::clamp(from_begin.dot(way) * inverse, 0.0, 1.0) * way;
   }
 
+  /// Whether another that does not cross it is farther away: mostly its line already says so.
+  bool is_farther(const Edge& other, double distance) const {
+    const auto from_line = [&](const Point& x) {
+      return (way.x() * (x.y() - begin.y()) - way.y() * (x.x() - begin.x())) / length;
+    };
+    const Point end = other.begin + other.way;
+    const double one = from_line(other.begin), two = from_line(end);
+    if (std::min(one, two) > distance || std::max(one, two) < -distance) return true;
+    return std::min({other.to(begin).squaredNorm(), other.to(begin + way).squaredNorm(),
+                     to(other.begin).squaredNorm(), to(end).squaredNorm()}) > distance * distance;
+  }
+
   Point begin;
   Vector way;
   double length, inverse;
@@ -82,10 +94,36 @@ class Count {
     const bool before = rings_.next(other) == edge, behind = rings_.next(edge) == other;
     if (before || behind) {
       const double to_tip = (x - (before ? own.begin : Point(own.begin + own.way))).norm();
-      if (to_tip < 0.5 * std::min(own.length, edges_[other].length)) return false;
+      constexpr double half = 0.5 * (1 - 1e-9);  // where edges are halved, rounding has no say
+      if (to_tip < half * std::min(own.length, edges_[other].length)) return false;
     }
     const double right = own.way.x() * from_other.y() - own.way.y() * from_other.x();
     return domain_on_the_left_[rings_.ring[edge]] ? right < 0 : right > 0;
+  }
+
+  /// The distance, at most, of any point of a part of an edge from the other edges across the domain:
+  /// `nearest` is so far from the middle.
+  double most_across(int edge, const Edge& part, int nearest, double distance) const {
+    if (nearest < 0) return distance + part.length / 2;
+    double most = 0;
+    for (const Point& end : {part.begin, Point(part.begin + part.way)}) {
+      const Vector from_nearest = edges_[nearest].to(end);
+      if (!is_across(end, edge, nearest, from_nearest)) return distance + part.length / 2;
+      most = std::max(most, from_nearest.norm());
+    }
+    return most;
+  }
+
+  void keep(const NarrowPlaces::Stretch& stretch) {
+    const auto about = [](double width) { return std::floor(8 * std::log2(width)); };
+    NarrowPlaces::Stretch* const last = found_.stretches.empty() ? nullptr : &found_.stretches.back();
+    if (!last || last->edge != stretch.edge || last->length != stretch.length ||
+        about(last->width) != about(stretch.width)) {
+      found_.stretches.push_back(stretch);
+      return;
+    }
+    last->width = std::min(last->width, stretch.width);
+    ++last->parts;
   }
 
   /// `first`: the place in near_ from which on the edges stand that may be closest to a point of the piece.
@@ -94,6 +132,7 @@ class Count {
     const double whole = edge.length, own = whole * (piece.end - piece.begin);
     const Point middle = edge.begin + 0.5 * (piece.begin + piece.end) * edge.way;
     double width = whole;
+    int nearest = -1;
     const std::size_t last = near_.size();
     squares_.resize(last);
     for (std::size_t i = first; i < last; ++i) {
@@ -103,20 +142,21 @@ class Count {
       if (squares_[i] >= most * most || !is_across(middle, piece.edge, near_[i], from_other)) continue;
       const double distance = std::sqrt(squares_[i]);
       if (distance < closest_) closest_ = distance, opposite_ = near_[i];
-      width = std::min(width, distance);
+      if (distance < width) width = distance, nearest = near_[i];
     }
     constexpr double steps = 4;  // of a piece, that its middle speaks for
     if (own <= steps * width) {
       const bool is_narrow = width < whole;
       if (is_narrow) found_.triangles += own / width;
-      found_.stretches.push_back(
-          {piece.edge, own, is_narrow ? width : std::numeric_limits<double>::infinity()});
+      keep({piece.edge, own, is_narrow ? width : std::numeric_limits<double>::infinity(), 1});
       return;
     }
     if (found_.triangles >= enough_) return;
-    const double reach = (width + own) * (width + own);
+    const Edge part({edge.begin + piece.begin * edge.way, edge.begin + piece.end * edge.way});
+    constexpr double rounding = 1 + 1e-9;
+    const double most = rounding * most_across(piece.edge, part, nearest, width), reach = most + own / 2;
     for (std::size_t i = first; i < last; ++i)
-      if (squares_[i] <= reach) near_.push_back(near_[i]);
+      if (squares_[i] <= reach * reach && !part.is_farther(edges_[near_[i]], most)) near_.push_back(near_[i]);
     const double half = 0.5 * (piece.begin + piece.end);
     add({piece.edge, piece.begin, half}, last);
     add({piece.edge, half, piece.end}, last);

@@ -13,10 +13,12 @@ namespace signorini {
 /// have edges of about d, so that they are about as many as ∫ ds / d along the boundary. Where two edges meet
 /// at a sharp angle that distance is their own, but for the tip, which one triangle fills.
 struct NarrowPlaces {
-  /// A part of an edge, cut from it by halving, along which the domain is about as wide.
+  /// Parts of an edge, cut from it by halving, along which the domain is about as wide: neighbours that are
+  /// about alike are one.
   struct Stretch {
     int edge;
-    double length, width;  ///< infinitely wide if nothing is closer than the edge is long
+    double length, width;  ///< of each part; infinitely wide if nothing is closer than the edge is long
+    int parts;
   };
 
   double triangles = 0;
@@ -28,7 +30,7 @@ struct NarrowPlaces {
 /// What a polygon without a fault has at most: triangles in its narrow places, which take some seconds to
 /// make, and near edges, at which every check looks: so many take some tens of milliseconds.
 inline constexpr double most_in_narrow_places = 300'000;
-inline constexpr std::size_t most_near_pairs = 200'000;
+inline constexpr std::size_t most_near_pairs = 100'000;
 
 /// Pairs of edges, by their numbers.
 using EdgePairs = std::vector<std::array<int, 2>>;

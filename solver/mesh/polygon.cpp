@@ -124,17 +124,21 @@ class Criteria {
 using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
 
 /// The vertices, numbered as the points of the rings, with the edges of the rings as constraints.
-std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& unit) {
+/// Points in long rows take up to some tenths of a millisecond each.
+std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& unit, Progress* progress) {
   std::vector<Vertex> vertices;
   Face near;
   for (const Point& x : unit.points) {
+    if (progress) progress->check_in(static_cast<int>(vertices.size()));
     const Vertex vertex = triangulation.insert({x.x(), x.y()}, near);
     vertex->info().value = static_cast<int>(vertices.size());
     near = vertex->face();
     vertices.push_back(vertex);
   }
-  for (int p = 0; p < static_cast<int>(vertices.size()); ++p)
+  for (int p = 0; p < static_cast<int>(vertices.size()); ++p) {
+    if (progress) progress->check_in(p);
     triangulation.insert_constraint(vertices[p], vertices[unit.next(p)]);
+  }
   return vertices;
 }
 
@@ -362,7 +366,7 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
   for (int round = 0; round < most_rounds; ++round) {
     const Rings unit = rings.within(frame);
     Triangulation triangulation;
-    mark_domain(triangulation, insert_rings(triangulation, unit), unit);
+    mark_domain(triangulation, insert_rings(triangulation, unit, progress), unit);
     refine(triangulation, field, max_triangles, progress);
     Extraction extraction(polygon, rings, frame, triangulation, progress);
     if (extraction.keeps_areas()) return std::move(extraction).mesh(progress);

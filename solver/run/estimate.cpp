@@ -118,7 +118,7 @@ class Estimation {
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles, Shows shows);
   void cut_coarser(const MeshRequest& coarse, std::int64_t triangles);
-  std::optional<Coarser> coarser_mesh(std::int64_t triangles) const;
+  std::optional<Coarser> coarser_mesh(std::int64_t triangles);
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
@@ -128,6 +128,7 @@ class Estimation {
   const PredictedSizes* const predicted_;
   std::vector<const Condition*> conditions_;  ///< of the parts
   std::vector<int> chains_;                   ///< of the parts, at most: each has a node more than edges
+  int may_be_tried_ = 24;                     ///< coarser meshes
   std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
   std::int64_t may_be_cut_ = 2 * most_cut;    ///< of those, and of their refinements
   std::optional<MeshPieces> pieces_;          ///< of a mesh that is made, or given
@@ -175,7 +176,7 @@ void Estimation::cut(const MeshData& data) {
 
 /// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
 /// vertices or its narrow places ask for more, whatever the size, it is one with twice as many, or none.
-std::optional<Coarser> Estimation::coarser_mesh(std::int64_t triangles) const {
+std::optional<Coarser> Estimation::coarser_mesh(std::int64_t triangles) {
   constexpr int attempts = 3;
   std::optional<Coarser> larger;
   // By Euler's formula.
@@ -183,7 +184,8 @@ std::optional<Coarser> Estimation::coarser_mesh(std::int64_t triangles) const {
   const auto least = std::reduce(chains_.begin(), chains_.end(), 2 * static_cast<std::int64_t>(holes) - 2);
   if (least > most_of_own_shape) return larger;
   double times = longer_for(triangles, few_triangles);
-  for (int attempt = 0; attempt < attempts; ++attempt, times *= 2) {
+  for (int attempt = 0; attempt < attempts && may_be_tried_ > 0; ++attempt, times *= 2) {
+    --may_be_tried_;
     const MeshRequest request = coarser(problem_.mesh, times);
     const std::int64_t made = (*predicted_)(request).triangles;
     if (made <= few_triangles) return Coarser{request, true};

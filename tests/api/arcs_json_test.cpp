@@ -1,4 +1,7 @@
 // Arcs and circles of a polygon as JSON has them.
+#include <cmath>
+#include <random>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -62,6 +65,36 @@ TEST(ArcsJson, FaultsHaveTheirPointers) {
   EXPECT_EQ(pointers_with(circle, json::object()), (Pointers{circle + "/centre", circle + "/radius"}));
   EXPECT_EQ(pointers_with("/domain/holes/0", json::object()), Pointers{circle});
   EXPECT_EQ(pointers_with("/domain/holes/0", 1), Pointers{"/domain/holes/0"});
+}
+
+/// Whatever numbers a polygon has, as far as numbers go: it is read, or has a fault.
+TEST(ArcsJson, OfAnySizeAreReadOrHaveFaults) {
+  std::mt19937 engine(1);
+  const auto number = [&] {
+    const double size = std::pow(10, std::uniform_real_distribution<>(-308, 308)(engine));
+    return engine() % 4 == 0 ? static_cast<double>(engine() % 3) : engine() % 2 == 0 ? size : -size;
+  };
+  int read = 0, faulty = 0;
+  for (int i = 0; i < 3000; ++i) {
+    json document = slotted();
+    for (json& vertex : document["domain"]["vertices"]) {
+      json& at = vertex.is_array() ? vertex : vertex["at"];
+      if (engine() % 3 == 0) at = {number(), number()};
+      if (vertex.contains("arc") && engine() % 2 == 0) vertex["arc"]["centre"] = {number(), number()};
+    }
+    if (engine() % 2 == 0)
+      document["domain"]["holes"][0] = {
+          {"circle", {{"centre", {number(), number()}}, {"radius", std::abs(number())}}}};
+    if (engine() % 2 == 0) document["mesh"]["size"] = std::abs(number());
+    try {
+      parse_request(document.dump());
+      ++read;
+    } catch (const InvalidProblem&) {
+      ++faulty;
+    }
+  }
+  EXPECT_EQ(read + faulty, 3000);
+  EXPECT_GT(read, 0);
 }
 
 TEST(ArcsJson, HaveOperatorsOfTheirOwn) {

@@ -144,6 +144,35 @@ TEST(Budget, APolygonIsMeasuredAndNotMeshed) {
 }
 
 /// Pairs of edges that lie closer to each other than they are long are many.
+/// Every tooth is near to all others, and a study looks at all of them for each of its meshes.
+TEST(Budget, CombsOfDeepTeethAreMeasuredToo) {
+  const auto deep = [](int teeth) {
+    json points{{0, 0}, {1, 0}};
+    for (int i = 2 * teeth; i >= 0; --i) points.push_back({i / (2. * teeth), 1 + i % 2});
+    return polygon(points, {{"size", 1}});
+  };
+  EXPECT_EQ(found_soon(deep(220)), "");
+  EXPECT_THAT(found_soon(deep(298)), testing::StartsWith("/domain/vertices"));
+  json study = deep(220);
+  study["study"] = {{"schemes", {"conforming", "nonconforming"}}, {"check", {"inf_sup"}}};
+  for (int i = 0; i < 64; ++i) study["study"]["sizes"].push_back(1 - 0.01 * i);
+  EXPECT_NE(found_soon(study), "malformed");
+  for (int i = 0; i < 500; ++i)
+    study["mesh"]["sizes"].push_back({{"at", {0.5, 1.5}}, {"radius", 5}, {"size", 0.5}});
+  EXPECT_EQ(found_soon(study), "/study/sizes");
+}
+
+/// Points that lie in two long rows, or on two circles close to each other.
+TEST(Budget, ThinStripsAreMeasuredToo) {
+  json strip = json::array();
+  for (int i = 0; i < 5000; ++i) strip.push_back({i * 2e-4, 0});
+  for (int i = 4999; i >= 0; --i) strip.push_back({i * 2e-4, 0.01});
+  EXPECT_EQ(found_soon(polygon(strip, {{"size", 1}})), "");
+  json rings = polygon(ring(4990), {{"size", 1}});
+  rings["domain"]["holes"] = {ring(4990, 0.998)};
+  EXPECT_EQ(found_soon(rings), "");
+}
+
 TEST(Budget, AnIntricatePolygonIsMeasuredTooOrRefused) {
   for (const int vertices : {3998, 9998})
     for (const double width : {0.1, 0.3})

@@ -42,6 +42,14 @@ Polygon disc(int vertices) {
   return polygon;
 }
 
+/// Thin, with so many vertices on each of its long sides.
+Polygon band(int vertices) {
+  Polygon polygon;
+  for (int i = 0; i < vertices; ++i) polygon.vertices.push_back({1. * i / vertices, 0});
+  for (int i = vertices - 1; i >= 0; --i) polygon.vertices.push_back({1. * i / vertices, 0.01});
+  return polygon;
+}
+
 Problem membrane_on(Domain domain, MeshRequest mesh, const std::vector<std::string>& held) {
   Problem problem;
   problem.domain = std::move(domain);
@@ -101,7 +109,7 @@ Run solves_again(Problem problem, const Settings& settings) {
   return [=](Observer& observer) { solve(problem, settings, observer, *shelf); };
 }
 
-/// Fourteen problems, each with the seconds in which its phases lie.
+/// Fifteen problems, each with the seconds in which its phases lie.
 std::vector<std::pair<Run, double>> problems_to_cancel() {
   Problem graded = membrane_on(disc(100), MeshRequest(LargestEdge{0.1}), {"side0"});
   graded.mesh.sizes = {{{0, 0}, 0.2, 1e-3}};
@@ -122,6 +130,7 @@ std::vector<std::pair<Run, double>> problems_to_cancel() {
           {solves_again(long_contact, {ActiveSet{}, {}}), 4},
           {solves(membrane_on(disc(100), MeshRequest(LargestEdge{3e-3}), {"side0"})), 4},
           {solves(graded), 3},
+          {solves(membrane_on(band(5000), MeshRequest(LargestEdge{1}), {"side0"})), 2},
           {solves(refined), 3},
           {solves(strip(6000, 4, Scheme::nonconforming)), 8},
           {solves(strip(long_tests() ? 10000 : 1000, 1, Scheme::nonconforming)), 8},
