@@ -1,7 +1,9 @@
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -57,13 +59,20 @@ JohnsonMercierRule::JohnsonMercierRule(const Spaces& spaces, int degree)
 
 void JohnsonMercierRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
                               double tolerance) {
+  const auto places_of = [&](const LawPiece& piece) {
+    const int degree = piece.degree_of_rule(of_fields, tolerance);
+    return JohnsonMercier::places(rule_of_degree(degree), piece.place.corners);
+  };
+  // They may be tens of megabytes, of which a growing vector would have three times as many.
+  std::size_t points = 0;
+  for (const LawPiece& piece : pieces) points += places_of(piece).size();
+  if (points > places.capacity()) *this = JohnsonMercierRule();
   places.clear();
+  places.reserve(points);
   errors.clear();
   for (const LawPiece& piece : pieces) {
-    const int degree = piece.degree_of_rule(of_fields, tolerance);
-    const auto own = JohnsonMercier::places(rule_of_degree(degree), piece.place.corners);
-    places.insert(places.end(), own.begin(), own.end());
-    errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
+    std::ranges::copy(places_of(piece), std::back_inserter(places));
+    errors.resize(places.size(), piece.error_of_rule(piece.degree_of_rule(of_fields, tolerance), of_fields));
   }
   evaluate(spaces);
 }
