@@ -50,7 +50,7 @@ struct Varied {
 Variation read_variation(const Value& patch, const Varied& posed, const Problem& problem) {
   const auto& [load, boundary, material] = posed;
   const Model model = components(problem.material) == 1 ? Model::membrane : Model::elasticity;
-  Variation variation{"", problem.body, problem.boundary, load_key(patch.json())};
+  Variation variation{"", problem.body, {}, load_key(patch.json())};
   const Object changes = *patch.object();
   if (const auto title = changes.find("title"); title && !title->json().is_null())
     variation.title = read_title(*title);
@@ -77,8 +77,8 @@ Variation read_variation(const Value& patch, const Varied& posed, const Problem&
       if (part != every_other_part)
         variation.boundary.insert_or_assign(part, condition);
       else
-        for (auto& [other, own] : variation.boundary)
-          if (!boundary.contains(other)) own = condition;
+        for (const auto& [other, own] : problem.boundary)
+          if (!boundary.contains(other)) variation.boundary.insert_or_assign(other, condition);
     }
   }
   return variation;
@@ -106,6 +106,7 @@ std::vector<Variation> read_sweep(const Value& value, const Object& document, co
   std::vector<Variation> sweep;
   if (value.faults().has_any_at("")) return sweep;
   const Varied posed{load ? load->json() : json(), boundary->json(), material ? material->json() : json()};
+  sweep.reserve(patches.size());
   for (const Value& patch : patches) {
     if (value.faults().is_full()) break;
     sweep.push_back(read_variation(patch, posed, problem));

@@ -220,8 +220,8 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
   const Rings unit = given.within(UnitFrame(given.points));
   const EdgePairs near = near_edges(unit, most_near_pairs + 1);
   // Each check relies on the ones before it.
-  std::vector<Fault> faults = intricate_faults(given, unit, near);
-  if (faults.empty()) faults = repeated_points(given, unit);
+  std::vector<Fault> faults = repeated_points(given, unit);
+  if (faults.empty()) faults = intricate_faults(given, unit, near);
   if (faults.empty()) faults = crossing_edges(given, unit);
   if (faults.empty()) faults = misplaced_holes(unit);
   if (faults.empty()) faults = narrow_faults(given, unit, near);

@@ -85,7 +85,7 @@ struct Problem {
 struct Variation {
   std::string title;
   VectorField body;
-  std::map<std::string, Condition> boundary;  ///< of the same kinds as the problem's
+  std::map<std::string, Condition> boundary;  ///< those that differ, of the same kinds as the problem's
   std::string load_key;
   std::optional<Material> material = {};  ///< nothing: the problem's own
   /// In the way of the problem's keys: two variations have it in common only if their materials are the same.

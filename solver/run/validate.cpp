@@ -216,7 +216,8 @@ class Validation {
 
 void apply(const Variation& variation, const Problem& original, Problem& varied) {
   varied.body = variation.body;
-  varied.boundary = variation.boundary;
+  varied.boundary = original.boundary;
+  for (const auto& [part, condition] : variation.boundary) varied.boundary.insert_or_assign(part, condition);
   varied.load_key = variation.load_key;
   varied.material = variation.material.value_or(original.material);
 }

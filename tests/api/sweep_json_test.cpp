@@ -32,16 +32,29 @@ std::vector<Variation> read(const json& sweep) {
   return parse_request(block(sweep).dump()).sweep;
 }
 
+/// The problems of the entries, each made of the one before.
+std::vector<Problem> posed(const json& sweep) {
+  const Request request = parse_request(block(sweep).dump());
+  std::vector<Problem> all;
+  Problem varied = request.problem;
+  for (const Variation& entry : request.sweep) {
+    apply(entry, request.problem, varied);
+    all.push_back(varied);
+  }
+  return all;
+}
+
 std::vector<Fault> faults_in(const json& sweep) {
   return faults_of([&] { read(sweep); });
 }
 
 TEST(ReadSweep, EntriesAreMergePatches) {
-  const auto sweep = read(json::parse(R"([
+  const json entries = json::parse(R"([
     {"title": "wider", "boundary": {"bottom": {"gap": "x"}}}, {"load": null}, {"boundary": {"bottom": {"gap": null}}},
-    {"load": {"body": [1, 2]}, "boundary": {"top": {"value": null, "pressure": 7}}}, {}])"));
+    {"load": {"body": [1, 2]}, "boundary": {"top": {"value": null, "pressure": 7}}}, {}])");
+  EXPECT_EQ(read(entries)[0].title, "wider");
+  const std::vector<Problem> sweep = posed(entries);
   ASSERT_EQ(sweep.size(), 5u);
-  EXPECT_EQ(sweep[0].title, "wider");
   EXPECT_EQ(std::get<Contact>(sweep[0].boundary.at("bottom")).gap({0.5, 0}), 0.5);
   EXPECT_EQ(sweep[0].body(1, {0.5, 0}), -0.5);
   EXPECT_EQ(sweep[1].body.size(), 0);
