@@ -81,9 +81,10 @@ Response list_solves(Service& service, const Request& request) {
       });
 }
 
-bool asks_for_many(const Query& query) {
+Length length_of_list(const Query& query) {
   const std::string limit = parameter(query, "limit").value_or("0");
-  return std::strtol(limit.c_str(), nullptr, 10) > static_cast<long>(ListQuery().limit);
+  const bool has_many = std::strtol(limit.c_str(), nullptr, 10) > static_cast<long>(ListQuery().limit);
+  return has_many ? Length::list : Length::brief;
 }
 
 Response delete_tagged(Service& service, const Request& request) {

@@ -7,8 +7,8 @@
 namespace signorini::server {
 
 Response list_solves(Service& service, const Request& request);
-/// Whether a list is to be longer than it is without a word.
-bool asks_for_many(const Query& query);
+/// A list may be long that is to be longer than it is without a word.
+Length length_of_list(const Query& query);
 /// Cancels or removes all solves with a tag, once the client has said how many they are.
 Response delete_tagged(Service& service, const Request& request);
 

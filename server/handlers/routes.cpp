@@ -51,7 +51,9 @@ Router routes_of_worker(Service& service) {
 Router routes(Service& service) {
   const auto with = [&service](Handle handle) { return bound(service, handle); };
   // What is made of a whole result may be read, written and compressed for seconds.
-  const auto has_result = [](const Query& query) { return !picks_summary_alone(query); };
+  const auto has_result = [](const Query& query) {
+    return picks_summary_alone(query) ? Length::brief : Length::result;
+  };
   const auto long_reply = [&](const std::string& pattern, std::vector<std::string> media_types,
                               Response (*handle)(Service&, const Request&)) -> Route {
     return {"GET", pattern, std::move(media_types), with(handle), Audience::clients, has_result};
@@ -63,7 +65,7 @@ Router routes(Service& service) {
   std::vector<Route> table{
       {"POST", "/v1/solves", document_types, with(post_solve), Audience::clients, has_result,
        require_readable},
-      with_page({"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, asks_for_many},
+      with_page({"GET", "/v1/solves", document_types, with(list_solves), Audience::clients, length_of_list},
                 page_of("Solves · Signorini", "solves", "solves")),
       {"DELETE", "/v1/solves", document_types, with(delete_tagged)},
       with_page({"GET", "/v1/solves/{id}", document_types, with(get_solve)},
@@ -83,7 +85,7 @@ Router routes(Service& service) {
        {event_stream_media_type},
        with(get_events),
        Audience::clients,
-       [](const Query&) { return true; }},
+       [](const Query&) { return Length::result; }},
       {"POST", "/v1/studies", document_types, with(post_study), Audience::clients, has_result,
        require_readable},
       {"POST", "/v1/batches", document_types, with(post_batch), Audience::clients, nullptr, require_readable,

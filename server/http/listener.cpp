@@ -168,6 +168,7 @@ class Listener::Impl {
         takers_(most_at_work(), cores()),
         readers_(readers, 1),
         carriers_(options.long_replies, cores()),
+        list_carriers_(options.long_replies, cores()),
         hatch_({},
                [this](std::shared_ptr<Connection> connection, bool goes_on) {
                  connection->keep_place(pending_.take_place());
@@ -206,7 +207,8 @@ class Listener::Impl {
     if (accepting_.joinable()) accepting_.join();
     pending_.stop();
     waiting_room_.stop();
-    for (ThreadPool* pool : {&probe_pool_, &takers_, &readers_, &pool_, &carriers_}) pool->shutdown();
+    for (ThreadPool* pool : {&probe_pool_, &takers_, &readers_, &pool_, &carriers_, &list_carriers_})
+      pool->shutdown();
     hatch_.stop();
   }
 
@@ -262,9 +264,14 @@ class Listener::Impl {
     }
   }
 
+  Length length_of_reply(const Message& message) const {
+    return router_.length(message.method, message.path, read_query(message.query));
+  }
+
   ThreadPool& pool_for_reply(const Message& message) {
     if (router_.is_for_probes(message.path)) return probe_pool_;
-    return router_.is_long(message.method, message.path, read_query(message.query)) ? carriers_ : pool_;
+    const Length length = length_of_reply(message);
+    return length == Length::result ? carriers_ : length == Length::list ? list_carriers_ : pool_;
   }
 
   /// A long body has its room until it was read by the handler, or will not be.
@@ -312,7 +319,8 @@ class Listener::Impl {
         });
   }
 
-  /// By the pool at hand, but what is long by those who carry such.
+  /// By the pool at hand, but what is long by those who carry such. Once all carriers have begun a result,
+  /// nothing else is begun until most have ended: a list would wait for seconds.
   void reply(const ThreadPool& pool, const std::shared_ptr<Exchange>& exchange, Response response) {
     Connection& connection = *exchange->connection;
     const Message& message = exchange->message;
@@ -323,8 +331,9 @@ class Listener::Impl {
     if (response.parts && message.method != "HEAD")
       return carry_parts_by_a_carrier(exchange, std::make_shared<const Response>(std::move(response)), true);
     if (response.write_body && message.method != "HEAD") {
-      if (&pool == &carriers_) return carry(*exchange, response);
-      return carriers_.enqueue(task_of(
+      ThreadPool& carriers = length_of_reply(message) == Length::result ? carriers_ : list_carriers_;
+      if (&pool == &carriers) return carry(*exchange, response);
+      return carriers.enqueue(task_of(
           connection, [this, exchange, response = std::move(response)] { carry(*exchange, response); }));
     }
     connection.keep_place(nullptr);
@@ -384,6 +393,8 @@ class Listener::Impl {
   ThreadPool
       readers_;  ///< of long bodies, one at a time: each may take tenths of a second and a hundred megabytes
   ThreadPool carriers_;  ///< of long replies, so that short ones do not wait for them
+  ThreadPool
+      list_carriers_;  ///< of those found long when they are made, which are so much shorter than results
   WaitingRoom waiting_room_;
   Hatch hatch_;
   PendingConnections pending_;

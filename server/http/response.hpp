@@ -31,6 +31,10 @@ class PartSource {
   virtual std::shared_ptr<void> subscribe(std::function<void()> ready) = 0;
 };
 
+/// How long a reply may be. One that is not brief is made and sent where others need not wait for it, and a
+/// list not where results are, each of which may take a hundred times as long.
+enum class Length { brief, list, result };
+
 struct LaterReply;
 
 /// One reply: a body that is there, one that is written while it is sent, or one that outlives the exchange;

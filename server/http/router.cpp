@@ -93,12 +93,12 @@ bool Router::is_for_probes(std::string_view path) const {
   });
 }
 
-bool Router::is_long(std::string_view method, std::string_view path, const Query& query) const {
+Length Router::length(std::string_view method, std::string_view path, const Query& query) const {
   if (method == "HEAD") method = "GET";
-  return std::ranges::any_of(routes_, [&](const Route& route) {
-    return route.is_long != nullptr && route.method == method && match(route.pattern, path) &&
-           route.is_long(query);
+  const auto route = std::ranges::find_if(routes_, [&](const Route& each) {
+    return each.length != nullptr && each.method == method && match(each.pattern, path);
   });
+  return route == routes_.end() ? Length::brief : route->length(query);
 }
 
 bool Router::is_long_to_read(std::string_view method, std::string_view path) const {

@@ -25,9 +25,7 @@ struct Route {
   std::vector<std::string> media_types;  ///< of the reply; 406 if the client takes none; empty: not asked
   Handler handler;
   Audience audience = Audience::clients;
-  /// Whether the reply to such a query may be long; it is made and sent where others need not wait for it.
-  /// Empty: no.
-  bool (*is_long)(const Query& query) = nullptr;
+  Length (*length)(const Query& query) = nullptr;  ///< of the reply to such a query; empty: brief
   /// Throws HttpError for a body that the handler would not take, by what the head says of it. Empty: nothing
   /// is asked.
   void (*judge_body)(const Request& request) = nullptr;
@@ -58,8 +56,8 @@ class Router {
 
   /// Whether a path is for probes.
   bool is_for_probes(std::string_view path) const;
-  /// Whether the reply may be long.
-  bool is_long(std::string_view method, std::string_view path, const Query& query) const;
+  /// How long the reply may be.
+  Length length(std::string_view method, std::string_view path, const Query& query) const;
   /// Whether it may take long to read what a request brings, however short its body is.
   bool is_long_to_read(std::string_view method, std::string_view path) const;
 
