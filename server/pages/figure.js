@@ -39,6 +39,7 @@ export class Figure {
   take(result) {
     const fields = fieldsOf(result);
     Object.assign(this, { result, fields, shape: new Shape(result, fields.get("displacement"), this.view), drawn: {} });
+    this.moving = true; // until it is drawn, nothing can be told of it
     this.readout.triangle = -1;
   }
   rough() {
