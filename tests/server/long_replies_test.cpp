@@ -56,6 +56,20 @@ class LongReplies : public testing::Test {
     return Clock::now() - begin;
   }
 
+  /// As many as the number says, which counts down as they have read it, compressed.
+  std::vector<std::thread> readers_of_result(std::atomic<int>& reading) const {
+    std::vector<std::thread> readers;
+    for (int i = reading; i > 0; --i)
+      readers.emplace_back([&] {
+        httplib::Client client("127.0.0.1", port());
+        client.set_read_timeout(200);
+        const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
+        EXPECT_TRUE(reply && reply->status == 200);
+        --reading;
+      });
+    return readers;
+  }
+
   const TemporaryDirectory directory_;
   Daemon daemon_;
   std::string id_;
@@ -72,15 +86,7 @@ Clock::duration most_are_within(std::vector<Clock::duration> times) {
 /// Once the list took 16 s.
 TEST_F(LongReplies, LeaveTheServiceToOthers) {
   std::atomic<int> reading = 8;
-  std::vector<std::thread> readers;
-  for (int i = 0; i < 8; ++i)
-    readers.emplace_back([&] {
-      httplib::Client client("127.0.0.1", port());
-      client.set_read_timeout(200);
-      const auto reply = client.Get(result(), {{"Accept-Encoding", "gzip"}});
-      EXPECT_TRUE(reply && reply->status == 200);
-      --reading;
-    });
+  std::vector<std::thread> readers = readers_of_result(reading);
   std::vector<Clock::duration> list, summary, health;
   do {
     list.push_back(time_of("/v1/solves"));
@@ -107,15 +113,7 @@ TEST_F(LongReplies, OfListsDoNotStandBehindResults) {
   const auto all = client.Get("/v1/solves?limit=200");
   ASSERT_GT(all->body.size(), 300'000u);
   std::atomic<int> reading = 16;
-  std::vector<std::thread> readers;
-  for (int i = 0; i < 16; ++i)
-    readers.emplace_back([&] {
-      httplib::Client own("127.0.0.1", port());
-      own.set_read_timeout(200);
-      const auto reply = own.Get(result(), {{"Accept-Encoding", "gzip"}});
-      EXPECT_TRUE(reply && reply->status == 200);
-      --reading;
-    });
+  std::vector<std::thread> readers = readers_of_result(reading);
   std::vector<Clock::duration> lists;
   do {
     lists.push_back(time_of("/v1/solves?limit=200"));

@@ -148,7 +148,7 @@ TEST_P(Memory, OfMeansOverTinyDiscs) {
   }
 }
 
-/// Of squares that cannot be halved often hardly any pieces are alike there.
+/// Of each piece there are two kinds, by where its diagonals begin.
 TEST_P(Memory, WhereDiagonalsAlternate) {
   for (Problem problem :
        {membrane(GetParam(), 73, 59), elastic(GetParam(), 73, 59), elastic(GetParam(), 80, 80)}) {

@@ -80,7 +80,7 @@ double Extensions::Hat::operator()(const Point& x) const {
 
 Extensions::Extensions(const Discretization& discrete, const LawOnMesh& laws, Factorization by,
                        Progress& progress, std::shared_ptr<const ElementTree> tree)
-    : discrete_(discrete), progress_(progress) {
+    : discrete_(discrete), progress_(progress), triangles_(discrete.mesh) {
   stiffness_.tree = std::move(tree);
   hold_parts();
   if (components() == 1)
@@ -299,8 +299,7 @@ Extension Extensions::operator()(const std::vector<int>& moved, const Given& giv
   return own;
 }
 
-Extension Extensions::tent(int part, const Given& given, const Hat& hat,
-                           const TrianglesAtPoints& around) const {
+Extension Extensions::tent(int part, const Given& given, const Hat& hat) const {
   const Mesh& mesh = discrete_.mesh;
   Extension own;
   own.at_points = held({part}, given, own.clashes);
@@ -310,7 +309,7 @@ Extension Extensions::tent(int part, const Given& given, const Hat& hat,
   std::vector<bool> is_under(mesh.triangles.size());
   std::vector<int> under;
   for (std::size_t i = 0; i < raised.size(); ++i)
-    for (const int t : around[raised[i]]) {
+    for (const int t : triangles_[raised[i]]) {
       if (is_under[t]) continue;
       is_under[t] = true;
       under.push_back(t);

@@ -56,7 +56,7 @@ class Extensions {
   };
   /// What is given on a part, 0 on all other supports, and beside them a hat as far as it hangs together with
   /// what is given: not of the least energy, but without a solve, and where it is 0 without a look.
-  Extension tent(int part, const Given& given, const Hat& hat, const TrianglesAtPoints& around) const;
+  Extension tent(int part, const Given& given, const Hat& hat) const;
 
  private:
   /// What a support holds in a point.
@@ -86,6 +86,7 @@ class Extensions {
 
   const Discretization& discrete_;
   Progress& progress_;
+  const TrianglesAtPoints triangles_;
   std::vector<int> supports_;
   std::map<int, std::vector<Hold>> holds_;  ///< by points
   std::map<int, Eigen::Matrix2d> turns_;  ///< of points that are held along one direction, which comes first

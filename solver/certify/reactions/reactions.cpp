@@ -39,7 +39,6 @@ Reactions::Reactions(const Discretization& discrete, const Solution& solution, c
       solution_(solution),
       extensions_(extensions),
       progress_(progress),
-      around_(discrete.mesh),
       work_(Eigen::MatrixXd::Zero(components(), static_cast<Eigen::Index>(discrete.mesh.points.size()))),
       size_(work_) {
   if (components() == 1)
@@ -182,7 +181,7 @@ EnclosedNumber Reactions::force_under(int part, Extensions::Hat hat,
   const double sign = components() == 1 ? 1 : -1;
   hat.top *= sign;
   const Extension extension = extensions_.tent(
-      part, [&](int point, const Vector&) { return sign * weight(point); }, hat, around_);
+      part, [&](int point, const Vector&) { return sign * weight(point); }, hat);
   EnclosedNumber own = enclose(extension, 0);
   if (!extension.clashes.empty()) own.upper = std::numeric_limits<double>::infinity();
   return own;

@@ -45,7 +45,6 @@ class Reactions {
   const Solution& solution_;
   const Extensions& extensions_;
   Progress& progress_;
-  const TrianglesAtPoints around_;
   /// (σ_h, ε(φ)) − (f, φ) − <t, φ> for the hats φ of the points, and all its terms with one sign.
   Eigen::MatrixXd work_, size_;
   /// Of the loads, by triangles and edges; those that are known are left out.
