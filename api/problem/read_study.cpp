@@ -90,10 +90,7 @@ StudyMesh read_adaptive(const Value& value, json mesh, const Value& study, const
 
 std::size_t sides_of(const Domain& domain) {
   const auto* polygon = std::get_if<Polygon>(&domain);
-  if (!polygon) return 0;
-  std::size_t sides = polygon->vertices.size();
-  for (const auto& hole : polygon->holes) sides += hole.size();
-  return sides;
+  return polygon ? polygon->vertex_count() : 0;
 }
 
 std::vector<StudyMesh> read_meshes(const Value& value, const Object& study, const Object& document,

@@ -58,7 +58,9 @@ int CircularArc::parts(double longest_chord) const {
 std::string why_no_arc(const Point& from, const Point& to, const Point& centre) {
   if (!centre.allFinite()) return "must be finite";
   const double one = (from - centre).norm(), other = (to - centre).norm(), chord = (to - from).norm();
-  if (one == 0 || other == 0) return "is an end of the arc: the radius is zero";
+  if (centre == from || centre == to) return "is an end of the arc: the radius is zero";
+  if (!std::isnormal(one * one))
+    return "makes the radius too large or too small for its square to be a number: use other units";
   if (from == to) return {};
   if (std::max(one, other) > kStraight * chord)
     return "lies so far away that the arc is straight but for rounding: leave the arc out";

@@ -30,12 +30,10 @@ std::string pointer_to_ring(std::size_t ring) {
 std::vector<Fault> faults_of_vertices(const Polygon& polygon) {
   const auto rings = given_rings(polygon);
   std::vector<Fault> faults;
-  std::size_t vertices = 0;
-  for (const auto* ring : rings) vertices += ring->size();
   const auto too_many = [](const char* where, const char* what, int most) -> std::vector<Fault> {
     return {{where, "a polygon may have at most " + std::to_string(most) + what + "; send a mesh instead"}};
   };
-  if (vertices > most_vertices)
+  if (polygon.vertex_count() > most_vertices)
     return too_many("/domain/vertices", " vertices with those of its holes", most_vertices);
   if (polygon.holes.size() > most_holes) return too_many("/domain/holes", " holes", most_holes);
   if (polygon.arcs.size() > most_arcs)
@@ -61,8 +59,11 @@ std::vector<Fault> faults_of_arcs(const Polygon& polygon) {
   for (const Arc& arc : polygon.arcs) {
     const std::vector<Point>& ring = *rings.at(arc.ring);
     const Point &from = ring.at(arc.vertex), &to = ring[(arc.vertex + 1) % ring.size()];
-    if (const std::string reason = why_no_arc(from, to, arc.centre); !reason.empty())
-      faults.add(pointer_to_ring(arc.ring) + '/' + std::to_string(arc.vertex) + "/arc/centre", reason);
+    const std::string reason = why_no_arc(from, to, arc.centre);
+    if (reason.empty()) continue;
+    // What has one vertex only may have been given as a circle.
+    const std::string where = ring.size() == 1 ? "" : '/' + std::to_string(arc.vertex) + "/arc/centre";
+    faults.add(pointer_to_ring(arc.ring) + where, reason);
   }
   std::vector<Fault> all;
   std::move(faults).append_to(all);

@@ -36,6 +36,13 @@ struct Polygon {
   /// Empty stands for `side0`, `side1`, … The edges of a hole form the part `hole0`, `hole1`, …
   std::vector<std::string> sides;
   std::vector<Arc> arcs{};
+
+  /// Of all rings, which have as many edges.
+  std::size_t vertex_count() const {
+    std::size_t count = vertices.size();
+    for (const auto& hole : holes) count += hole.size();
+    return count;
+  }
 };
 
 /// A mesh as a client gives it: points, triangles of point numbers (from 0), and for each part of the
