@@ -63,7 +63,7 @@ Variation read_variation(const Value& patch, const Varied& posed, const Problem&
     json merged = material;
     merged.merge_patch(member->json());
     if (merged != material) {
-      variation.material = read_material(member->instead(merged), model);
+      variation.material = std::make_shared<const Material>(read_material(member->instead(merged), model));
       variation.material_key = merged.dump();
     }
   }

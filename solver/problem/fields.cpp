@@ -9,12 +9,22 @@ std::vector<const Field*> pointers_to(const auto& fields) {
   return pointers;
 }
 
+/// What an operation takes, as measured; of the angles those beyond 1e22.
+double steps_of(Operation operation) {
+  if (operation == Operation::power) return 4;
+  const bool is_function =
+      (Operation::exp <= operation && operation <= Operation::atanh) || operation == Operation::atan2;
+  return is_function ? 3 : 1;
+}
+
 /// The arithmetic in which the value of a formula is the number of its steps.
 struct Counting {
   double x = 1, y = 1, nx = 1, ny = 1;
 
   double constant(double) const { return 1; }
-  double operator()(Operation, double a, double b = 0, double c = 0) const { return a + b + c + 1; }
+  double operator()(Operation operation, double a, double b = 0, double c = 0) const {
+    return a + b + c + steps_of(operation);
+  }
 };
 
 }  // namespace

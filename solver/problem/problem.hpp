@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -87,7 +87,7 @@ struct Variation {
   VectorField body;
   std::map<std::string, Condition> boundary;  ///< those that differ, of the same kinds as the problem's
   std::string load_key;
-  std::optional<Material> material = {};  ///< nothing: the problem's own
+  std::shared_ptr<const Material> material = {};  ///< null: the problem's own
   /// In the way of the problem's keys: two variations have it in common only if their materials are the same.
   std::string material_key = {};
 };

@@ -75,8 +75,9 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
         "the formulas are so long, or so many, that they were tried in some points of the mesh only: "
         "whether they have sound values in all, the solve will tell");
   constexpr double long_formula = 60;
-  if (longest_formula(problem.body) > long_formula)
-    left.push_back("the formula of the load is long: whether the body can come to rest, the solve will tell");
+  if (longest_formula(problem.body) > long_formula || steps_on_boundary(problem, mesh) > most_steps)
+    left.push_back(
+        "the formulas of the loads are long: whether the body can come to rest, the solve will tell");
   else
     held_by_contact_alone(Discretization(with_sampled_loads(problem), mesh));
   return left;

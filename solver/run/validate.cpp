@@ -27,7 +27,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Steps that may be taken for each field, see steps_of().
+/// Steps that may be taken, see steps_of().
 constexpr double kAll = std::numeric_limits<double>::infinity(), kOnCoarseMesh = 1e6;
 
 /// What encloses its values everywhere tells so, in one look.
@@ -42,9 +42,19 @@ bool is_known_to_be_finite(const Field& field, const Mesh& mesh) {
 /// Collects the faults of a problem, subject by subject.
 class Validation {
  public:
-  /// `most_steps`: for each field. Where its formula is long and places many, only each so many is asked.
+  /// `most_steps`: for all fields together, each of which has its share. Where its formula is long and places
+  /// many, only each so many is asked.
   Validation(const Problem& problem, double most_steps, Progress* progress = nullptr)
-      : problem_(problem), most_steps_(most_steps), progress_(progress) {}
+      : problem_(problem), most_steps_(most_steps), progress_(progress) {
+    double formulas = 1;  // the gaps are asked twice
+    const auto count = [&](const std::vector<const Field*>& fields) {
+      if (!std::ranges::all_of(fields, &Field::is_constant)) ++formulas;
+    };
+    count(fields_of(problem.material));
+    for (const Field& component : problem.body.fields()) count({&component});
+    for (const auto& [part, condition] : problem.boundary) count(fields_of(condition));
+    share_ = most_steps / formulas;
+  }
 
   std::vector<Fault> run() {
     faults_ = validate(problem_.domain, problem_.mesh);
@@ -148,6 +158,7 @@ class Validation {
 
   /// Of a gap that the ends of edges do not need they are not asked.
   void check_condition(const Mesh& mesh, const BoundaryPart& part, const Condition& condition) {
+    if (!may_take(0)) return;
     const bool with_ends =
         std::holds_alternative<Fixed>(condition) ||
         (std::holds_alternative<Contact>(condition) && problem_.scheme == Scheme::conforming);
@@ -167,8 +178,19 @@ class Validation {
     }
   }
 
+  /// In all places or none.
   void check_gaps(const Mesh& mesh) {
+    const double steps = steps_on_boundary(problem_, mesh);
+    if (!may_take(steps)) return;
+    steps_ += steps;
     attempt([&] { make_clearance_space(problem_, mesh); });
+  }
+
+  /// Besides those that were taken.
+  bool may_take(double steps) {
+    const bool may = steps_ + steps <= most_steps_;
+    is_complete_ = is_complete_ && may;
+    return may;
   }
 
   template <typename Evaluate>
@@ -182,8 +204,7 @@ class Validation {
   }
 
   std::size_t stride_for(std::size_t places, const std::vector<const Field*>& fields) {
-    const auto stride =
-        1 + static_cast<std::size_t>(static_cast<double>(places) * steps_of(fields) / most_steps_);
+    const auto stride = 1 + static_cast<std::size_t>(static_cast<double>(places) * steps_of(fields) / share_);
     is_complete_ = is_complete_ && stride == 1;
     return stride;
   }
@@ -206,6 +227,7 @@ class Validation {
 
   const Problem& problem_;
   const double most_steps_;
+  double share_;  ///< of a field
   Progress* const progress_;
   std::vector<Fault> faults_;
   double steps_ = 0;
@@ -214,12 +236,23 @@ class Validation {
 
 }  // namespace
 
+double steps_on_boundary(const Problem& problem, const Mesh& mesh) {
+  double steps = 0;
+  for (const BoundaryPart& part : mesh.boundary) {
+    const auto condition = problem.boundary.find(part.name);
+    if (condition != problem.boundary.end())
+      steps +=
+          static_cast<double>(part.edges.size() * EdgeRule::size) * steps_of(fields_of(condition->second));
+  }
+  return steps;
+}
+
 void apply(const Variation& variation, const Problem& original, Problem& varied) {
   varied.body = variation.body;
   varied.boundary = original.boundary;
   for (const auto& [part, condition] : variation.boundary) varied.boundary.insert_or_assign(part, condition);
   varied.load_key = variation.load_key;
-  varied.material = variation.material.value_or(original.material);
+  varied.material = variation.material ? *variation.material : original.material;
 }
 
 std::vector<Fault> validate(const Problem& problem) {
@@ -250,7 +283,7 @@ void check_sweep(const Problem& problem, const std::vector<Variation>& sweep, co
     Validation validation(varied, most_of_field, progress);
     const bool other_gaps_only = !problem.load_key.empty() && varied.load_key == problem.load_key;
     const std::string place = "/sweep/" + std::to_string(i);
-    for (Fault& fault : validation.run_on_data(mesh, other_gaps_only, sweep[i].material.has_value())) {
+    for (Fault& fault : validation.run_on_data(mesh, other_gaps_only, sweep[i].material != nullptr)) {
       if (!fault.where.starts_with(place)) fault.where = place + fault.where;
       check.faults.push_back(std::move(fault));
     }

@@ -91,7 +91,8 @@ TEST(FactorizationsOfSweeps, GiveTheSameEntries) {
   for (const double young : {3., 4.}) {
     sweep.push_back({"", problem.body, problem.boundary, "same"});
     std::get<Contact>(sweep.back().boundary.at("bottom")).gap = 0.01;
-    sweep.back().material = YoungPoisson{Field(young), Field(0.3), Plane::strain};
+    sweep.back().material =
+        std::make_shared<const Material>(YoungPoisson{Field(young), Field(0.3), Plane::strain});
     sweep.back().material_key = std::to_string(young);
   }
   Observer indifferent;

@@ -84,6 +84,19 @@ TEST_P(Memory, OfLongBodiesCountsTheirContact) {
   expect_bound(column);
 }
 
+/// Contact on both long sides, of which the half is open.
+TEST_P(Memory, OfManyPressuresThatVanish) {
+  const int x = long_tests() ? 800 : 300;
+  Problem strip = elastic(GetParam(), x, 4);
+  std::get<Rectangle>(strip.domain).size.x() = x / 4.;
+  strip.mesh.pattern = Pattern::crossed;
+  strip.boundary = {{"right", Fixed{}},
+                    {"top", Contact{Field(0)}},
+                    {"bottom", Contact{problems::formula("0.1*sin(9*x+7*y)")}},
+                    {"left", Traction{VectorField(problems::formula("2+sin(3*x)*cos(2*y)"), Field(1))}}};
+  expect_bound(strip);
+}
+
 TEST_P(Memory, OfOtherMeshesAndLaws) {
   const double size = long_tests() ? 0.01 : 0.05;
   expect_bound(in_polygon(membrane(GetParam(), 1, 1), size));
@@ -380,7 +393,8 @@ TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
   std::vector<Variation> sweep(2, {"", problem.body, problem.boundary, "same"});
   for (std::size_t i = 0; i < sweep.size(); ++i) {
     const std::string young = "3 + x * " + std::to_string(i);
-    sweep[i].material = YoungPoisson{problems::formula(young), Field(0.3), Plane::strain};
+    sweep[i].material =
+        std::make_shared<const Material>(YoungPoisson{problems::formula(young), Field(0.3), Plane::strain});
     sweep[i].material_key = young;
   }
   problems::Shelf shelf;

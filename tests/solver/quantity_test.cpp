@@ -401,7 +401,7 @@ TEST(QuantitiesOfASweep, AreThoseOfTheProblemsAlone) {
     std::vector<Variation> sweep(5, Variation{"", problem.body, problem.boundary, ""});
     sweep[1].body = VectorField(Field(1), Field(-6));
     sweep[2].boundary["bottom"] = Contact{formula("0.004 + 0.01*x^2")};
-    sweep[3].material = soft;
+    sweep[3].material = std::make_shared<const Material>(soft);
     sweep[3].material_key = "soft";
     const Solution solution = solved(problem, sweep);
     ASSERT_EQ(solution.sweep.size(), sweep.size());

@@ -217,7 +217,7 @@ TEST(Sweep, EntriesOfOtherMaterialsAreSingleSolves) {
         for (std::size_t i = 0; i < single.size(); ++i) {
           sweep.push_back(data_of(single[i], "loads"));
           if (i < 2 || i + 2 >= single.size()) continue;
-          sweep.back().material = single[i].material;
+          sweep.back().material = std::make_shared<const Material>(single[i].material);
           if (with_keys) sweep.back().material_key = std::to_string(i / 2);
         }
         EXPECT_EQ(operators_of(sweep), with_keys ? 3u : 5u);
@@ -235,7 +235,8 @@ TEST(Sweep, AMaterialThatIsNoneFailsAloneOrIsRefusedBefore) {
   std::vector<Variation> sweep(3, data_of(problem, "loads"));
   // Positive in the middle of each triangle of the coarse mesh that is looked at beforehand.
   const auto thin = [](const Point& x, const Vector&) { return std::abs(x.x() - 1. / 18) < 1e-3 ? -1. : 1.; };
-  sweep[1].material = MembraneStiffness::isotropic(Field(thin, "/sweep/1/material/stiffness"));
+  sweep[1].material = std::make_shared<const Material>(
+      MembraneStiffness::isotropic(Field(thin, "/sweep/1/material/stiffness")));
   const auto bad = [&] { return solve_sweep(problem, sweep, {ActiveSet{}, {}}); };
   std::string found;
   try {
@@ -246,7 +247,7 @@ TEST(Sweep, AMaterialThatIsNoneFailsAloneOrIsRefusedBefore) {
     found = invalid.faults().front().where;
   }
   EXPECT_NE(found.find("/material/stiffness"), std::string::npos) << found;
-  sweep[1].material = MembraneStiffness{1, 2, 1};
+  sweep[1].material = std::make_shared<const Material>(MembraneStiffness{1, 2, 1});
   try {
     bad();
     FAIL();
@@ -401,7 +402,7 @@ TEST(Sweep, HelpersFindWhatOneFindsAlone) {
       if (i >= 18) other.body = VectorField(-3 - i / 21);
       sweep.push_back(data_of(other, i < 18 ? "own" : "other " + std::to_string(i / 21)));
       if (i == 8 || i == 9) {
-        sweep.back().material = MembraneStiffness::isotropic(2);
+        sweep.back().material = std::make_shared<const Material>(MembraneStiffness::isotropic(2));
         sweep.back().material_key = "2";
       }
     }
