@@ -1,0 +1,299 @@
+#include "estimation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "fem/clearance_space.hpp"
+#include "mesh/rectangle.hpp"
+#include "mesh/refine.hpp"
+#include "mesh/rings.hpp"
+
+namespace signorini {
+namespace {
+
+/// The same with edges so many times as long.
+MeshRequest coarser(MeshRequest request, double times) {
+  std::get<LargestEdge>(request.fineness).length *= times;
+  for (LocalSize& local : request.sizes) local.size *= times;
+  return request;
+}
+
+/// By how much longer edges a mesh has no more triangles than `most`: twice, four times and so on.
+double longer_for(std::int64_t triangles, std::int64_t most) {
+  double times = 1;
+  while (static_cast<double>(triangles) > static_cast<double>(most) * times * times) times *= 2;
+  return times;
+}
+
+/// Of certifying with a law that varies, as measured: where it is smooth most triangles are one piece or few.
+double seconds_of_law(const Material& material, const Spaces& spaces, double triangles) {
+  if (is_constant(material)) return 0;
+  const double of_membrane = spaces.order == 0 ? 3e-5 : 1e-4, of_body = spaces.order == 0 ? 2.2e-4 : 4e-4;
+  return (spaces.components == 1 ? of_membrane : of_body) * triangles;
+}
+
+/// Of enclosing a quantity, as measured: its dual problem, its certificate and the sums over the mesh, which
+/// ask for the law three times as often as a certificate. The cells of a load that jumps share a budget.
+double seconds_of(const Quantity& quantity, const Material& material, const Spaces& spaces,
+                  double triangles) {
+  const double of_dual = spaces.components == 1 ? 3e-6 : spaces.order == 0 ? 1.1e-5 : 1.4e-5;
+  const bool varies = !std::ranges::all_of(quantity.density.fields(), &Field::is_constant);
+  const double of_cells = quantity.disc || quantity.outline ? 0.7 * std::pow(triangles / 512, 0.3) : 0;
+  return (of_dual + (varies ? 8e-6 : 0)) * triangles + of_cells +
+         3 * seconds_of_law(material, spaces, triangles);
+}
+
+}  // namespace
+
+double seconds_of_quantities(const Problem& problem, double triangles) {
+  const Spaces& spaces = spaces_of(problem.scheme, components(problem.material));
+  double sum = 0;
+  for (const Quantity& quantity : problem.quantities)
+    sum += seconds_of(quantity, problem.material, spaces, triangles);
+  return sum;
+}
+
+Estimation::Estimation(const Problem& problem, Factorization by, const PredictedSizes* predicted)
+    : problem_(problem), by_(by), predicted_(predicted) {
+  // How many unknowns there are does not depend on them, and to ask for them may take long.
+  for (auto& [part, condition] : problem_.boundary) {
+    if (auto* contact = std::get_if<Contact>(&condition)) contact->gap = Field(0);
+    if (auto* fixed = std::get_if<Fixed>(&condition)) fixed->value = VectorField();
+  }
+  for (const std::string& name : part_names(problem_.domain)) {
+    const auto condition = problem_.boundary.find(name);
+    conditions_.push_back(condition == problem_.boundary.end() ? nullptr : &condition->second);
+  }
+  const auto* polygon = std::get_if<Polygon>(&problem_.domain);
+  chains_.assign(conditions_.size(), polygon ? 0 : 1);
+  if (!polygon) return;
+  for (const int part : parts_of(*polygon).of_side) ++chains_[part];
+}
+
+/// The pieces of a mesh; `edges_of(part)` has pairs of points.
+template <typename EdgesOfPart>
+void Estimation::cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+                     const EdgesOfPart& edges_of, Shows shows) {
+  std::vector<MeshPieces::Edges> edges;
+  for (std::size_t part = 0; part < conditions_.size(); ++part) edges.push_back(edges_of(part));
+  std::vector<std::pair<const Condition*, const MeshPieces::Edges*>> boundary;
+  for (std::size_t part = 0; part < conditions_.size(); ++part)
+    boundary.emplace_back(conditions_[part], &edges[part]);
+  pieces_.emplace(points, triangles, boundary, components(problem_.material),
+                  shows == Shows::itself && by_ == Factorization::multifrontal &&
+                      is_constant(problem_.material) && !problem_.mesh.adaptive);
+}
+
+void Estimation::cut(const Mesh& mesh, Shows shows) {
+  cut(
+      mesh.points, mesh.triangles,
+      [&](std::size_t part) {
+        MeshPieces::Edges edges;
+        for (const int edge : mesh.boundary[part].edges) edges.push_back(mesh.edges[edge]);
+        return edges;
+      },
+      shows);
+}
+
+/// Uniform refinements are made as long as they have no more triangles than these, and few.
+void Estimation::cut_finer(Mesh mesh, std::int64_t triangles, Shows shows) {
+  const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
+  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) mesh = refine(mesh, 1);
+  may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
+  const bool is_all = static_cast<std::int64_t>(mesh.triangles.size()) == triangles;
+  cut(mesh, is_all ? shows : Shows::another);
+}
+
+void Estimation::cut(const MeshData& data) {
+  cut(
+      data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; },
+      problem_.mesh.refine == 0 ? Shows::itself : Shows::another);
+}
+
+/// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
+/// vertices or its narrow places ask for more, whatever the size, it is one with twice as many, or none.
+std::optional<Estimation::Coarser> Estimation::coarser_mesh(std::int64_t triangles) {
+  constexpr int attempts = 3;
+  std::optional<Coarser> larger;
+  // By Euler's formula.
+  const std::size_t holes = std::get<Polygon>(problem_.domain).holes.size();
+  const auto least = std::reduce(chains_.begin(), chains_.end(), 2 * static_cast<std::int64_t>(holes) - 2);
+  if (least > most_of_own_shape) return larger;
+  double times = longer_for(triangles, few_triangles);
+  for (int attempt = 0; attempt < attempts && may_be_tried_ > 0; ++attempt, times *= 2) {
+    --may_be_tried_;
+    const MeshRequest request = coarser(problem_.mesh, times);
+    const std::int64_t made = (*predicted_)(request).triangles;
+    if (made <= few_triangles) return Coarser{request, true};
+    if (made <= most_of_own_shape && !larger) larger = {request, false};
+  }
+  return larger;
+}
+
+/// By a mesh of the shape of those that it asks for.
+void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t triangles) {
+  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most_of_own_shape);
+  if (!mesh) return;
+  may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+  cut_finer(std::move(*mesh), triangles, Shows::another);
+}
+
+std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
+  // The sides in a ring, so that the neighbours of a side are the ones before and after it.
+  constexpr std::array ring{"left", "bottom", "right", "top"};
+  const auto part = [&](int side) {
+    return static_cast<std::size_t>(std::ranges::find(rectangle_parts(), ring[side]) -
+                                    rectangle_parts().begin());
+  };
+  std::int64_t unknowns = 0;
+  for (int side = 0; side < 4; ++side) {
+    if (!condition<Contact>(part(side))) continue;
+    unknowns += sizes.parts[part(side)].edges;
+    if (problem_.scheme == Scheme::nonconforming) continue;
+    ++unknowns;  // the nodes, less those that a fixed neighbour holds
+    for (const int neighbour : {(side + 1) % 4, (side + 3) % 4})
+      if (condition<Fixed>(part(neighbour))) --unknowns;
+  }
+  return unknowns;
+}
+
+/// The edges whose middle becomes a node, or two where a curved boundary turns an elastic body's normal
+/// there.
+std::int64_t Estimation::nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const {
+  const auto* contact = condition<Contact>(part);
+  if (!contact) return 0;
+  const auto& [edges, chords] = sizes.parts[part];
+  const bool turns = components(problem_.material) == 2 && contact->direction.isZero(0);
+  return edges + (turns ? chords : 0);
+}
+
+/// Those of a mesh before its refinements, nearly.
+std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
+  const bool by_nodes = problem_.scheme == Scheme::conforming;
+  std::int64_t unknowns = 0;
+  for (std::size_t part = 0; part < conditions_.size(); ++part)
+    if (condition<Contact>(part))
+      unknowns += by_nodes ? nodes_in_the_middle(part, sizes) + chains_[part] : sizes.parts[part].edges;
+  return unknowns;
+}
+
+/// Of the mesh that the problem asks for. Small ones are made.
+Counts Estimation::count() {
+  std::optional<Mesh> mesh;
+  MeshSizes sizes = (*predicted_)(problem_.mesh);
+  const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
+  const std::optional<Coarser> coarse =
+      is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;
+  // Few, or twice as many where no coarser one of few shows the shape.
+  const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
+  // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
+  const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
+  if (!has_formula && may_be_made_ > 0 && sizes.triangles <= most)
+    mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
+  if (mesh) {
+    may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
+    sizes = sizes_of(*mesh);
+  }
+  const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
+  if (mesh) {
+    cut_finer(*mesh, triangles, Shows::itself);
+  } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
+    if (!pieces_) cut(*data);
+  } else if (coarse && may_be_cut_ > 0) {
+    cut_coarser(coarse->request, triangles);
+  }
+  std::int64_t contact = mesh ? make_clearance_space(problem_, *mesh).unknowns : contact_unknowns(sizes);
+  for (int i = 0; i < problem_.mesh.refine; ++i) {
+    if (problem_.scheme == Scheme::nonconforming) contact *= 2;
+    for (std::size_t part = 0; problem_.scheme == Scheme::conforming && part < conditions_.size(); ++part)
+      contact += nodes_in_the_middle(part, sizes);
+    sizes = refined(sizes, 1);
+  }
+  if (is_rectangle()) contact = contact_unknowns_of_rectangle(sizes);
+  return counts_of(sizes, contact);
+}
+
+Counts Estimation::counts_of(const MeshSizes& sizes, std::int64_t contact) const {
+  Counts counts{sizes.triangles, sizes.edges, sizes.points};
+  for (std::size_t part = 0; part < conditions_.size(); ++part) {
+    const std::int64_t edges = sizes.parts[part].edges;
+    if (condition<Fixed>(part)) counts.fixed_edges += edges;
+    if (condition<Roller>(part) || condition<Contact>(part)) counts.normal_edges += edges;
+  }
+  counts.contact_unknowns = contact;
+  counts.across = sizes.across;
+  return counts;
+}
+
+/// The boundary grows as the root of the number of triangles. Every interior edge has two of them, and by
+/// Euler there is about one point to two.
+Counts grown(const Counts& start, const Adaptive& goal) {
+  const auto triangles = std::max<std::int64_t>(start.triangles, goal.max_triangles);
+  const double growth = static_cast<double>(triangles) / static_cast<double>(start.triangles);
+  const auto boundary = [&](std::int64_t count) {
+    return static_cast<std::int64_t>(std::sqrt(growth) * static_cast<double>(count));
+  };
+  const std::int64_t boundary_edges = boundary(2 * start.edges - 3 * start.triangles);
+  return {triangles,
+          (3 * triangles + boundary_edges) / 2,
+          (triangles + boundary_edges) / 2 + 1,
+          boundary(start.fixed_edges),
+          boundary(start.normal_edges),
+          boundary(start.contact_unknowns),
+          start.across};
+}
+
+std::int64_t stress_unknowns(const Spaces& spaces, const Counts& counts) {
+  const int inner = spaces.stresses() - 3 * spaces.traces_per_edge();
+  return counts.edges * spaces.traces_per_edge() + counts.triangles * inner;
+}
+
+Estimate Estimation::operator()() {
+  const Counts counts = count();
+  return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts);
+}
+
+Estimate Estimation::operator()(const Mesh& mesh) {
+  cut(mesh);
+  return estimate_of(counts_of(sizes_of(mesh), make_clearance_space(problem_, mesh).unknowns));
+}
+
+Estimate Estimation::estimate_of(const Counts& counts) const {
+  const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
+  Estimate estimate;
+  estimate.triangles = counts.triangles;
+  estimate.unknowns = {stress_unknowns(spaces, counts), counts.triangles * spaces.displacements(),
+                       counts.contact_unknowns, spaces.rotations() ? counts.points : 0};
+  const std::int64_t held =
+      (spaces.components * counts.fixed_edges + counts.normal_edges) * (spaces.order + 1);
+  estimate.system =
+      counts.edges * spaces.traces_per_edge() - held + estimate.unknowns.rotation + estimate.unknowns.contact;
+
+  // Nested dissection fills a planar matrix of n unknowns with O(n log n) entries at O(n^1.5) operations;
+  // the factors are fitted to measured solves.
+  const double n = static_cast<double>(estimate.system),
+               contact = static_cast<double>(counts.contact_unknowns);
+  const double entries = n * std::log2(n + 2);
+  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr,
+                         counts.across};
+  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
+  estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
+  if (!problem_.quantities.empty()) {
+    // The body without its contacts is factored beside the problem.
+    const bool opens = std::ranges::any_of(
+        problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
+    if (opens) estimate.memory_bytes *= 2;
+    estimate.memory_bytes += memory_of_dual(problem_, spaces, sizes.triangles);
+    estimate.kept_bytes = memory_of_kept_duals(problem_, spaces, sizes);
+  }
+  estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
+  if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
+  estimate.entry_bytes = memory_of_entry(contact);
+  estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3) +
+                     seconds_of_law(problem_.material, spaces, sizes.triangles) +
+                     seconds_of_quantities(problem_, sizes.triangles);
+  return estimate;
+}
+
+}  // namespace signorini
