@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "certify/data/law_pieces.hpp"
-#include "fem/quadrature.hpp"
+#include "fem/cubature.hpp"
+#include "fem/raviart_thomas.hpp"
 #include "mesh/rectangle.hpp"
 #include "problems/membrane.hpp"
 
@@ -77,6 +79,57 @@ TEST(LawPieces, OfAJumpBetweenTwoTensorsKnowBothOnAnyCell) {
     ASSERT_EQ(pieces.size(), 1u);
     EXPECT_TRUE(pieces[0].jumps);
     for (int k = 1; k < LawPiece::kOrders; ++k) EXPECT_NEAR(pieces[0].errors[k], 2, 1e-9);
+  }
+}
+
+std::vector<Material> smooth_membranes() {
+  const std::string smooth = "exp(x)*(2+sin(5*y))";
+  const auto times = [&](double entry) {
+    return problems::formula(problems::digits(entry) + "*(" + smooth + ")");
+  };
+  return {MembraneStiffness::isotropic(times(1)), MembraneStiffness{times(1), Field(0), times(2)},
+          MembraneStiffness{times(1), Field(0.1), times(3)}};
+}
+
+/// Lemma 4 of THEORY.md, for squares of a quadratic field.
+TEST(LawPieces, TellWhatARuleMayMiss) {
+  const std::array<Point, 3> corners{Point(0.1, 0.2), Point(0.5, 0.3), Point(0.2, 0.7)};
+  const AffineMap map(corners);
+  for (const Material& membrane : smooth_membranes())
+    for (const double tolerance : {1e-2, 1e-5, 1e-9}) {
+      CellBudget budget{400};
+      const std::vector<LawPiece> pieces = law_pieces(membrane, corners, {tolerance, tolerance}, budget);
+      for (const LawPiece& piece : pieces) {
+        const auto integral = [&](const std::vector<WeightedPoint>& rule, bool of_compliance) {
+          double sum = 0;
+          for (const auto& [own, weight] : rule) {
+            const Point x = map(piece.place(own));
+            const Vector field(1 + x.x() * x.y(), x.y() * x.y() - 3 * x.x());
+            const Eigen::Matrix2d compliance = compliance_at(membrane, x);
+            const Eigen::Matrix2d law = of_compliance ? compliance : compliance.inverse();
+            sum += weight * field.dot(law * field);
+          }
+          return sum;
+        };
+        const int degree = piece.degree_of_rule(2, tolerance);
+        for (const bool of_compliance : {false, true}) {
+          const double by_rule = integral(rule_of_degree(degree), of_compliance);
+          EXPECT_NEAR(by_rule, integral(composite_rule(16), of_compliance),
+                      (2 * piece.error_of_rule(degree, 2) + 1e-13) * by_rule);
+        }
+      }
+    }
+}
+
+/// As near a polynomial as the certificate of a membrane on so fine a mesh asks for.
+TEST(LawPieces, OfASmoothMembraneAreFew) {
+  Observer observer;
+  Progress progress(observer, std::nullopt);
+  const Mesh mesh = rectangle_mesh(Rectangle{}, Divisions{24, 24}, Pattern::right);
+  const std::vector<Material> membranes = smooth_membranes();
+  for (const bool isotropic : {true, false}) {
+    const LawOnMesh laws(membranes[isotropic ? 0 : 1], mesh, 2e-11, progress);
+    for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) EXPECT_LE(laws.cut(t).size(), 4u);
   }
 }
 

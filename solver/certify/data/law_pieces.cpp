@@ -47,7 +47,25 @@ Quality best_of(Quality one, const Quality& other) {
   return one;
 }
 
-/// The fields of a material on a cell.
+/// What is near a polynomial is near one of a higher degree too.
+Quality with_least_errors(Quality own) {
+  for (int k = 1; k < kOrders; ++k) own.errors[k] = std::min(own.errors[k], own.errors[k - 1]);
+  return own;
+}
+
+bool is_isotropic(const MembraneStiffness& material) {
+  const auto& [xx, xy, yy] = material;
+  return xy.is_constant() && xy(Point::Zero()) == 0 && xx.formula() && xx.formula() == yy.formula();
+}
+
+/// Those that are to be enclosed.
+std::vector<const Field*> different_fields(const Material& material) {
+  const auto* membrane = std::get_if<MembraneStiffness>(&material);
+  if (membrane && is_isotropic(*membrane)) return {&membrane->xx};
+  return fields_of(material);
+}
+
+/// The different fields of a material on a cell.
 struct EnclosedFields {
   std::vector<Series> series;    ///< none where something is not decided
   std::vector<Models> branches;  ///< see branches_on_triangle(); none where the series do
@@ -151,8 +169,26 @@ struct EnclosedMatrix {
     if (!(range(determinant).lower() > 0)) return std::nullopt;
     EnclosedMatrix all;
     for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) all.entries[i][j] = cofactor(j, i) / determinant;
+      for (int j = 0; j < N; ++j)
+        all.entries[i][j] =
+            i == j ? constant_like(determinant, 1) / schur_complement(i) : cofactor(j, i) / determinant;
     return all;
+  }
+
+ private:
+  /// What is left of a diagonal entry if the others are eliminated: of a diagonal matrix the entry itself.
+  /// The determinant over the cofactor is the same, but has it several times, and enclosures forget that it
+  /// is one.
+  Value schur_complement(int i) const {
+    const Value& own = entries[i][i];
+    if constexpr (N == 2) {
+      return own - entries[0][1] * entries[0][1] / entries[1 - i][1 - i];
+    } else {
+      const int a = (i + 1) % 3, b = (i + 2) % 3;
+      const Value &to_a = entries[i][a], &to_b = entries[i][b], &between = entries[a][b];
+      return own - (to_a * (to_a * entries[b][b] - 2. * between * to_b) + to_b * to_b * entries[a][a]) /
+                       cofactor(i, i);
+    }
   }
 };
 
@@ -245,8 +281,7 @@ Quality quality(const std::optional<EnclosedMatrix<N, Series>>& series,
       }
     take(errors_of(*relative_series, spectrum));
   }
-  for (int k = 1; k < kOrders; ++k) all.errors[k] = std::min(all.errors[k], all.errors[k - 1]);
-  return all;
+  return with_least_errors(all);
 }
 
 template <int N, typename Matrix>
@@ -258,18 +293,47 @@ Quality quality(const EnclosedFields& fields, const Matrix& matrix_of) {
   return quality(series, branches);
 }
 
-Quality quality(const MembraneStiffness&, const EnclosedFields& fields) {
-  return quality<2>(fields, []<typename Value>(const std::vector<Value>& own) -> EnclosedMatrix<2, Value> {
-    return {{{{own[0], own[1]}, {own[1], own[2]}}}};
-  });
-}
-
 Quality quality(const HookeTensor&, const EnclosedFields& fields) {
   return quality<3>(fields, []<typename Value>(const std::vector<Value>& own) -> EnclosedMatrix<3, Value> {
     const Value &xx = own[0], &xy = own[1], &yy = own[3];
     const Value xs = std::numbers::sqrt2 * own[2], ys = std::numbers::sqrt2 * own[4], ss = 2. * own[5];
     return {{{{xx, xy, xs}, {xy, yy, ys}, {xs, ys, ss}}}};
   });
+}
+
+/// Whatever branch it is that a point lies on.
+Models hull_of(const std::vector<Models>& branches) {
+  Models models = branches[0];
+  for (const Models& other : branches)
+    for (std::size_t i = 0; branches.size() > 1 && i < models.size(); ++i)
+      models[i] = hull(models[i], other[i]);
+  return models;
+}
+
+/// E = κ 1.
+template <typename Value>
+Quality multiple_of_unity(const Value& stiffness) {
+  const Interval& own = range(stiffness);
+  if (!(own.lower() > 0)) return unknown();
+  const Value compliance = constant_like(stiffness, 1) / stiffness;
+  Quality all{{}, 1 / own.lower(), own.upper()};
+  const double spread = own.upper() / own.lower();
+  for (int k = 0; k < kOrders; ++k)
+    // Against 0, and against the constant in the middle, of κ and of 1/κ alike.
+    all.errors[k] = std::min(k == 0 ? spread : (spread - 1) / 2,
+                             std::max(error(stiffness, k) / own.lower(), error(compliance, k) * own.upper()));
+  return with_least_errors(all);
+}
+
+Quality quality(const MembraneStiffness& material, const EnclosedFields& fields) {
+  if (!is_isotropic(material))
+    return quality<2>(fields, []<typename Value>(const std::vector<Value>& own) -> EnclosedMatrix<2, Value> {
+      return {{{{own[0], own[1]}, {own[1], own[2]}}}};
+    });
+  Quality all = unknown();
+  if (!fields.series.empty()) all = multiple_of_unity(fields.series[0]);
+  if (fields.branches.empty()) return all;
+  return best_of(all, multiple_of_unity(hull_of(fields.branches)[0]));
 }
 
 /// σ and ε are multiples of each other on tensors without trace and on those that are all trace.
@@ -297,11 +361,7 @@ Quality quality(const YoungPoisson& material, const EnclosedFields& fields) {
   Quality all = unknown();
   if (!fields.series.empty()) all = best_of(all, isotropic(material, fields.series));
   if (fields.branches.empty()) return all;
-  Models models = fields.branches[0];
-  for (const Models& other : fields.branches)
-    for (std::size_t i = 0; fields.branches.size() > 1 && i < models.size(); ++i)
-      models[i] = hull(models[i], other[i]);
-  return best_of(all, isotropic(material, models));
+  return best_of(all, isotropic(material, hull_of(fields.branches)));
 }
 
 Quality quality_of(const Material& material, const EnclosedFields& fields) {
@@ -320,7 +380,7 @@ int LawPiece::degree_of_rule(int of_fields, double tolerance) const {
 
 std::vector<LawPiece> law_pieces(const Material& material, const std::array<Point, 3>& corners,
                                  const LawTolerance& tolerance, CellBudget& budget) {
-  const std::vector<const Field*> fields = fields_of(material);
+  const std::vector<const Field*> fields = different_fields(material);
   const AffineMap map(corners);
   const auto placed = [&](const std::array<Point, 3>& cell) -> std::array<Point, 3> {
     return {map(cell[0]), map(cell[1]), map(cell[2])};
