@@ -10,30 +10,6 @@
 namespace signorini::admissible_minimum_test {
 namespace {
 
-/// A chain of rows, each with unknowns of its neighbours, some of them twice or the sum of two others.
-TEST(NullSpace, IsWhatAllRowsHaveInCommon) {
-  std::mt19937 engine(1);
-  std::uniform_real_distribution<> number(-1, 1);
-  constexpr int unknowns = 12;
-  std::vector<LinearForm> rows;
-  for (int i = 0; i + 4 < unknowns; ++i) {
-    LinearForm row;
-    for (int k = 0; k < 4; ++k) row.emplace_back(i + k, 1e6 * number(engine));
-    rows.push_back(row);
-  }
-  rows.push_back(rows[2]);
-  LinearForm sum = rows[0];
-  sum.insert(sum.end(), rows[1].begin(), rows[1].end());
-  rows.push_back(sum);
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(rows.size(), unknowns);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const auto& [unknown, factor] : rows[i]) dense(i, unknown) += factor;
-  const Eigen::MatrixXd basis = null_space(unknowns, rows);
-  EXPECT_EQ(basis.cols(), 4);
-  EXPECT_LE((dense * basis).norm(), 1e-8 * basis.norm());
-  EXPECT_EQ(basis.colPivHouseholderQr().rank(), 4);
-}
-
 /// ½ |A x|² − b·x with unknowns in different units.
 struct Bowl {
   Bowl() {

@@ -1,19 +1,16 @@
 #pragma once
 
 #include <array>
-#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
 #include "certify/displacement/admissible_displacement.hpp"
 #include "certify/pressure/contact_pressure.hpp"
+#include "certify/pressure/free_unknowns.hpp"
 #include "progress/progress.hpp"
 
 namespace signorini {
-
-/// A linear function of the unknowns, by the numbers of those that it depends on.
-using LinearForm = std::vector<std::pair<int, double>>;
 
 /// p* at one end of an edge of the clearance space, which changes with the unknowns.
 struct MovingPressure {
@@ -33,10 +30,6 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
                                                const Eigen::VectorXd& clearance,
                                                const ContactPressure& pressure, int i,
                                                std::array<LinearForm, 2> changes);
-
-/// The sparse columns whose combinations are all x with row·x = 0 for each of the rows. Dependent rows are
-/// no harm.
-Eigen::SparseMatrix<double> null_space(int unknowns, const std::vector<LinearForm>& rows);
 
 /// The x that minimises ½ x·curvature x + slope·x + <p*, g − v_n> with row·x = 0 for the conditions, as far
 /// as p* ≥ 0 allows, where p* starts with its values. A primal active set: it goes towards the minimum until
