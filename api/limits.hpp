@@ -10,8 +10,10 @@ namespace signorini::api::limits {
 
 // Of a document: arrays and objects within each other, values, and members of objects.
 inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 100'000;
-/// Of them, values that are not in the domain.
-inline constexpr std::size_t values_beside_domain = 300'000;
+/// Of them, values that are not in the mesh of a domain.
+inline constexpr std::size_t values_beside_mesh = 300'000;
+/// What the values may take, in bytes: so many, and so many for each byte of the document.
+inline constexpr std::size_t memory = 8'000'000, memory_of_byte = 10;
 /// Of a number, one after the other: a double is known by a few, and a million take as long as a thousand
 /// numbers.
 inline constexpr std::size_t digits = 1000;
@@ -36,6 +38,6 @@ inline constexpr std::size_t sweep_entries = 10'000, study_meshes = 64, batch_pr
 /// Of all entries of a sweep together, with those that an entry has from the problem.
 inline constexpr std::size_t sweep_conditions = 50'000;
 /// Of all meshes of a study together, local sizes times sides of the polygon.
-inline constexpr std::size_t study_local_sizes = 2'000'000;
+inline constexpr std::size_t study_local_sizes = 200'000;
 
 }  // namespace signorini::api::limits

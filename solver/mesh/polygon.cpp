@@ -125,7 +125,8 @@ using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
 
 /// The vertices, numbered as the points of the rings, with the edges of the rings as constraints.
 /// Points in long rows take up to some tenths of a millisecond each.
-std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& unit, Progress* progress) {
+std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& given, const Rings& unit,
+                                 Progress* progress) {
   std::vector<Vertex> vertices;
   Face near;
   for (const Point& x : unit.points) {
@@ -137,7 +138,14 @@ std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& unit
   }
   for (int p = 0; p < static_cast<int>(vertices.size()); ++p) {
     if (progress) progress->check_in(p);
-    triangulation.insert_constraint(vertices[p], vertices[unit.next(p)]);
+    try {
+      triangulation.insert_constraint(vertices[p], vertices[unit.next(p)]);
+    } catch (const Triangulation::Intersection_of_constraints_exception&) {
+      // As the chords of its first rounds an arc may pass by what it crosses.
+      throw InvalidProblem(
+          {{unit.pointer_to(p), given.in_words(p) + " crosses or touches another edge, or comes so close to "
+                                                    "it that no chords tell them apart"}});
+    }
   }
   return vertices;
 }
@@ -366,7 +374,7 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
   for (int round = 0; round < most_rounds; ++round) {
     const Rings unit = rings.within(frame);
     Triangulation triangulation;
-    mark_domain(triangulation, insert_rings(triangulation, unit, progress), unit);
+    mark_domain(triangulation, insert_rings(triangulation, rings, unit, progress), unit);
     refine(triangulation, field, max_triangles, progress);
     Extraction extraction(polygon, rings, frame, triangulation, progress);
     if (extraction.keeps_areas()) return std::move(extraction).mesh(progress);

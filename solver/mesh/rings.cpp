@@ -11,8 +11,17 @@ namespace signorini {
 namespace {
 
 /// Whether two edges have more in common than an end.
+/// Both ends lie so far on one side of the line that nothing between them touches it.
+bool lies_beside(const Segment& segment, const Segment& line) {
+  const double first = twice_area(line[0], line[1], segment[0]),
+               second = twice_area(line[0], line[1], segment[1]),
+               reach = touching * (line[1] - line[0]).lpNorm<1>();
+  return std::min(first, second) > reach || std::max(first, second) < -reach;
+}
+
 bool collide(const Rings& unit, int i, int j) {
   const Segment a = unit.edge(i), b = unit.edge(j);
+  if (lies_beside(a, b) || lies_beside(b, a)) return false;
   const auto near = [](const Point& x, const Segment& edge) { return distance(x, edge) <= touching; };
   if (unit.next(i) == j) return near(a[0], b) || near(b[1], a);
   if (unit.next(j) == i) return near(b[0], a) || near(a[1], b);
@@ -114,34 +123,51 @@ double domain_area(const Rings& rings) {
   return area;
 }
 
-std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
+namespace {
+
+/// Those of which `concerns(i, j)`.
+template <typename Concerns>
+std::vector<std::array<int, 2>> colliding_edges_if(const Concerns& concerns, const Rings& unit,
+                                                   std::size_t most, std::size_t& may_be_tried) {
   std::vector<Box> boxes;
   for (int e = 0; e < static_cast<int>(unit.points.size()); ++e)
     boxes.push_back(box_around(unit.edge(e), touching));
   std::vector<std::array<int, 2>> pairs;
   for_each_meeting_pair(boxes, [&](int i, int j) {
+    if (!concerns(i, j)) return true;
+    if (may_be_tried == 0) return false;
+    --may_be_tried;
     if (collide(unit, i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});
     return pairs.size() < most;
   });
   return pairs;
 }
 
+}  // namespace
+
+std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
+  std::size_t all = std::numeric_limits<std::size_t>::max();
+  return colliding_edges_if([](int, int) { return true; }, unit, most, all);
+}
+
 Rings resolved_rings(const Polygon& polygon, double longest_chord) {
   Rings rings(polygon, longest_chord);
   // Each round brings a chord four times closer to its arc.
   constexpr int most_rounds = 8;
-  constexpr std::size_t most_points = 50'000;
+  constexpr std::size_t most_points = 15'000;
+  // Arcs among so many edges that are near each other are not looked at more closely: they cross, or the
+  // polygon is refused for them.
+  std::size_t may_be_tried = 500'000;
   for (int round = 0; round < most_rounds && !rings.circles.empty() && rings.points.size() < most_points;
        ++round) {
+    const auto has_chord = [&](int i, int j) { return rings.circle[i] >= 0 || rings.circle[j] >= 0; };
+    const auto pairs = colliding_edges_if(has_chord, rings.within(UnitFrame(rings.points)),
+                                          rings.points.size(), may_be_tried);
+    if (pairs.empty() || may_be_tried == 0) break;
     std::vector<std::vector<Point>> middles(rings.points.size());
-    bool is_resolved = true;
-    for (const auto& pair : colliding_edges(rings.within(UnitFrame(rings.points)), rings.points.size()))
-      for (const int edge : pair) {
-        if (rings.circle[edge] < 0) continue;
-        middles[edge] = {rings.middle(edge)};
-        is_resolved = false;
-      }
-    if (is_resolved) break;
+    for (const auto& pair : pairs)
+      for (const int edge : pair)
+        if (rings.circle[edge] >= 0) middles[edge] = {rings.middle(edge)};
     rings = rings.with(middles);
   }
   return rings;

@@ -97,6 +97,20 @@ TEST(ArcsJson, OfAnySizeAreReadOrHaveFaults) {
   EXPECT_GT(read, 0);
 }
 
+/// So nearly straight that their first chords pass by each other.
+TEST(ArcsJson, ThatCrossOnceTheyAreMeshedHaveFaults) {
+  json document = json::parse(R"({
+    "model": "membrane", "domain": {"type": "polygon", "vertices": [
+      {"at": [1, 0], "arc": {"centre": [30.5, 30.5]}}, [0, 1],
+      {"at": [-1, 0], "arc": {"centre": [29.5, 29.5]}}, {"at": [0, -1], "arc": {"centre": [0.501, -0.501]}}]},
+    "mesh": {"size": 0.5}, "material": {"stiffness": 1}, "boundary": {"side0": {"type": "fixed"}},
+    "scheme": "conforming"})");
+  const auto faults = faults_of([&] { parse_request(document.dump()); });
+  EXPECT_EQ(pointers_of(faults), std::vector<std::string>{"/domain/vertices/3"});
+  ASSERT_FALSE(faults.empty());
+  EXPECT_NE(faults.front().detail.find("the arc from (0, -1) to (1, 0)"), std::string::npos);
+}
+
 TEST(ArcsJson, HaveOperatorsOfTheirOwn) {
   json document = json::parse(R"({
     "model": "membrane", "domain": {"type": "polygon", "vertices": [{"at": [1, 0], "arc": {"centre": [0, 0]}}, [0, 1], [0, 0]]},

@@ -265,6 +265,47 @@ TEST(Budget, LongFormulasAreTriedInFewPlaces) {
   EXPECT_EQ(found_soon(problem), "");
 }
 
+/// Of slow operations, on all edges of a strip.
+TEST(Budget, LongDataAreTriedOnFewEdges) {
+  std::string slow = "x^2.5^y^x";
+  while (slow.size() < 980) slow += "+x^2.5^y^x";
+  for (const json& condition :
+       {json{{"type", "contact"}, {"gap", slow}}, json{{"type", "fixed"}, {"value", slow}},
+        json{{"type", "traction"}, {"value", slow}}}) {
+    json strip = membrane_on({{"type", "rectangle"}, {"size", {2, 1}}}, {{"divisions", {2000, 1}}});
+    strip["boundary"] = {
+        {"bottom", condition}, {"left", condition}, {"right", condition}, {"top", {{"type", "fixed"}}}};
+    EXPECT_EQ(found_soon(strip), "");
+  }
+}
+
+/// All of them cross, however many chords they have.
+TEST(Budget, CirclesThatCrossAreNotResolvedForEver) {
+  json problem = polygon({{-40, -40}, {40, -40}, {40, 40}, {-40, 40}}, {{"size", 10}});
+  for (int i = 0; i < 490; ++i)
+    problem["domain"]["holes"].push_back(
+        {{"circle", {{"centre", {std::cos(i), std::sin(2 * i)}}, {"radius", 10 + 0.001 * i}}}});
+  EXPECT_NE(found_soon(problem), "malformed");
+  json star = json::array();
+  for (int i = 0; i < 9000; ++i)
+    star.push_back({(i % 2 + 1) * std::cos(std::numbers::pi * i / 4500),
+                    (i % 2 + 1) * std::sin(std::numbers::pi * i / 4500)});
+  problem["domain"]["vertices"] = star;
+  for (json& hole : problem["domain"]["holes"]) hole["circle"]["radius"] = 1.5;
+  EXPECT_NE(found_soon(problem), "malformed");
+}
+
+TEST(Budget, AStudyWithLocalSizesIsCountedOrRefused) {
+  json problem = polygon(ring(100), {{"size", 0.2}});
+  problem["study"] = {{"schemes", {"conforming", "nonconforming"}}, {"check", {"inf_sup"}}};
+  for (int i = 0; i < 64; ++i) problem["study"]["sizes"].push_back(0.2 + 0.001 * i);
+  for (int i = 0; i < 31; ++i)
+    problem["mesh"]["sizes"].push_back({{"at", {0, 0.01 * i}}, {"radius", 5}, {"size", 0.1}});
+  EXPECT_NE(found_soon(problem), "malformed");
+  problem["mesh"]["sizes"].push_back({{"at", {0, 0}}, {"radius", 5}, {"size", 0.1}});
+  EXPECT_EQ(found_soon(problem), "/study/sizes");
+}
+
 TEST(Budget, AStudyCountsItsMeshesByOnePolygon) {
   json problem = polygon(ring(9990), {{"size", 0.1}});
   for (int i = 0; i < 64; ++i) problem["study"]["sizes"].push_back(0.03 + 0.001 * i);
