@@ -133,17 +133,25 @@ class Builder : public nlohmann::json_sax<json> {
   bool number_float(number_float_t value, const string_t&) override { return add(value); }
   bool string(string_t& value) override {
     if (!is_in_domain() && (texts_ += value.size()) > limits::texts) throw too_much_text();
+    take_memory(kOfString + value.size());
     return add(std::move(value));
   }
   bool binary(binary_t&) override { return false; }  // JSON text has none
 
-  bool start_object(std::size_t) override { return open(json::object()); }
-  bool start_array(std::size_t) override { return open(json::array()); }
+  bool start_object(std::size_t) override {
+    take_memory(kOfObject);
+    return open(json::object());
+  }
+  bool start_array(std::size_t) override {
+    take_memory(kOfArray);
+    return open(json::array());
+  }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
   bool key(string_t& name) override {
     if (++members_ > limits::members) throw too_many(limits::members, "members of objects");
+    take_memory(kOfMember + name.size());
     if (open_.back()->contains(name))
       throw MalformedJson("the member " + in_quotes(name) + " at " + in_quotes(pointer_to(pointer(), name)) +
                           " is there twice; give it once");
@@ -189,8 +197,9 @@ class Builder : public nlohmann::json_sax<json> {
   /// nothing is added to the one around them meanwhile.
   json* insert(json value) {
     if (++values_ > limits::values) throw too_many(limits::values, "values");
-    if (!is_in_domain() && ++values_beside_domain_ > limits::values_beside_domain)
-      throw too_many(limits::values_beside_domain, "values outside the domain");
+    if (!is_in_mesh() && ++values_beside_mesh_ > limits::values_beside_mesh)
+      throw too_many(limits::values_beside_mesh, "values outside a mesh");
+    take_memory(kOfValue);
     if (observer_ && values_ % 4096 == 0 && !observer_->keep_going()) throw Cancelled();
     if (open_.empty()) {
       root_ = std::move(value);
@@ -204,6 +213,23 @@ class Builder : public nlohmann::json_sax<json> {
 
   bool is_in_domain() const { return !names_.empty() && names_.front() == "domain"; }
 
+  bool is_in_mesh() const {
+    return is_in_domain() && names_.size() > 1 &&
+           (names_[1] == "points" || names_[1] == "triangles" || names_[1] == "boundary");
+  }
+
+  /// Bytes of a value in a list that grows, and what it has besides, with what the allocator adds.
+  static constexpr std::size_t kOfValue = 32, kOfString = 48, kOfArray = 48, kOfObject = 64, kOfMember = 80;
+
+  /// A mesh takes some seven times the length of its text.
+  void take_memory(std::size_t bytes) {
+    if ((memory_ += bytes) > limits::memory + limits::memory_of_byte * text_.size())
+      throw MalformedJson(
+          "the values in the body would take more than " +
+          std::to_string((limits::memory + limits::memory_of_byte * text_.size()) / 1'000'000) +
+          " MB: no problem of its length has as many");
+  }
+
   /// The pointer of the innermost open container.
   std::string pointer() const {
     std::string pointer;
@@ -216,7 +242,7 @@ class Builder : public nlohmann::json_sax<json> {
   std::string_view text_;
   Observer* const observer_;
   json root_;
-  std::size_t values_ = 0, values_beside_domain_ = 0, members_ = 0, texts_ = 0;
+  std::size_t values_ = 0, values_beside_mesh_ = 0, members_ = 0, texts_ = 0, memory_ = 0;
   PlaceInText place_;
   std::vector<json*> open_;
   std::vector<std::string> names_;  ///< the member being read of each open object

@@ -97,8 +97,32 @@ TEST(ParseJson, StopsAtTheDepthLimitWithoutRecursion) {
 
 TEST(ParseJson, CountsDepthNotContainers) {
   std::string many = "[";
-  for (int i = 0; i < 100'000; ++i) many += "[{}],";
-  EXPECT_EQ(parse_json(many + "0]").size(), 100'001u);
+  for (int i = 0; i < 60'000; ++i) many += "[{}],";
+  EXPECT_EQ(parse_json(many + "0]").size(), 60'001u);
+}
+
+std::string repeated(const std::string& element, int times) {
+  std::string list = "[";
+  for (int i = 0; i < times; ++i) list += element + ",";
+  return list + element + "]";
+}
+
+/// What takes many times its text in memory is no problem; a mesh takes some seven times as much.
+TEST(ParseJson, CountsWhatTheValuesTake) {
+  EXPECT_THAT(refusal(R"({"quantities": )" + repeated("{}", 150'000) + "}"), HasSubstr("MB"));
+  EXPECT_THAT(refusal(repeated("{\"a\":{}}", 90'000)), HasSubstr("MB"));
+  EXPECT_EQ(refusal(R"({"domain": {"points": )" + repeated("[0,0]", 80'000) + "}}"), "accepted");
+  EXPECT_EQ(refusal(R"({"domain": {"points": )" + repeated("[0.12345,0.6789]", 250'000) +
+                    R"(, "triangles": )" + repeated("[12345,12346,12400]", 250'000) + "}}"),
+            "accepted");
+}
+
+/// Of its domain a polygon has thousands of values only.
+TEST(ParseJson, CountsWhatIsNotInAMesh) {
+  EXPECT_THAT(refusal(R"({"domain": {"sides": )" + repeated("\"\"", 1'500'000) + "}}"),
+              HasSubstr("300000 values"));
+  EXPECT_THAT(refusal(R"({"domain": {"vertices": )" + repeated("[0.123456,0.345678]", 600'000) + "}}"),
+              HasSubstr("300000 values"));
 }
 
 TEST(ParseJson, DoesNotRepeatALongTextThatItRefuses) {

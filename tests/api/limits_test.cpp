@@ -55,7 +55,9 @@ TEST(Limits, StandInTheOpenapiDocument) {
 TEST(Limits, OfSumsAreDescribed) {
   const std::vector<std::pair<const char*, std::vector<std::size_t>>> descriptions{
       {"Problem/description",
-       {limits::texts, limits::values, limits::members, limits::nesting, limits::digits}},
+       {limits::texts, limits::values, limits::values_beside_mesh, limits::members, limits::nesting,
+        limits::digits}},
+      {"Study/description", {limits::study_local_sizes}},
       {"Polygon/description", {limits::vertices, limits::arcs}},
       {"Problem/properties/sweep/description", {limits::sweep_conditions}}};
   for (const auto& [pointer, all] : descriptions)
