@@ -5,6 +5,7 @@
 #include "fem/quadrature.hpp"
 #include "fem/scheme.hpp"
 #include "mesh/mesh.hpp"
+#include "problem/material.hpp"
 
 namespace signorini {
 
@@ -43,7 +44,6 @@ class Element {
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 9, 9>;
-  using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, 4>;
 
   LocalMatrix constant_form(const AffineMap& map, const Compliance& compliance) const;
   LocalMatrix varying_compliance(const AffineMap& map) const;

@@ -42,11 +42,6 @@ Vector bubble_curl(const Point& p) {
 
 }  // namespace
 
-AffineMap::AffineMap(const std::array<Point, 3>& corners) : origin(corners[0]) {
-  jacobian << corners[1] - origin, corners[2] - origin;
-  determinant = jacobian.determinant();
-}
-
 RaviartThomas::RaviartThomas(int order, bool with_bubble) : order_(order), with_bubble_(with_bubble) {
   const int monomial_fields = size() - (with_bubble ? 1 : 0);
   coefficients_ = functionals(monomial_fields, [&](const Point& p) { return monomials(order, p); }).inverse();

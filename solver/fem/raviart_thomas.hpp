@@ -19,7 +19,11 @@ using LocalVectors = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2
 /// The affine map x = a + J x̂ from the reference triangle (0,0), (1,0), (0,1) onto a triangle that runs
 /// counter-clockwise.
 struct AffineMap {
-  explicit AffineMap(const std::array<Point, 3>& corners);
+  explicit AffineMap(const std::array<Point, 3>& corners) : origin(corners[0]) {
+    jacobian.col(0) = corners[1] - origin;
+    jacobian.col(1) = corners[2] - origin;
+    determinant = jacobian(0, 0) * jacobian(1, 1) - jacobian(1, 0) * jacobian(0, 1);
+  }
 
   Point operator()(const Point& reference) const { return origin + jacobian * reference; }
 

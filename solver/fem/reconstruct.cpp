@@ -3,11 +3,14 @@
 namespace signorini {
 namespace {
 
+/// A column or a row a component, without memory of its own: there is one for each triangle.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 2, 2>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2, 1>;
+
 /// ∇u at the centroid of a triangle, a row a component: C σ, and for elasticity γ [0 1; −1 0] besides.
-Eigen::MatrixXd gradient(const Problem& problem, const Solution& solution, int t, const Point& centroid) {
-  const auto compliance = compliance_at(problem.material, centroid);
+SmallMatrix gradient(const Compliance& compliance, const Solution& solution, int t) {
   const auto stress = solution.stress_at_centroids.col(t);
-  if (solution.components == 1) return (compliance * stress).transpose();
+  if (solution.components == 1) return compliance.lazyProduct(stress).transpose();
   const Eigen::Vector4d strain = compliance * Eigen::Vector4d(stress[0], stress[2], stress[2], stress[1]);
   const auto& [a, b, c] = solution.mesh.triangles[t];
   const double rotation = (solution.rotation[a] + solution.rotation[b] + solution.rotation[c]) / 3;
@@ -36,7 +39,8 @@ Eigen::MatrixXd stress_at_centroids(const Mesh& mesh, const Spaces& spaces, cons
     const AffineMap map(mesh.corners(t));
     const auto rows = stress.col(t).reshaped(spaces.components, spaces.row.size());
     // Column c: row c of the stress.
-    const Eigen::MatrixXd tensor = map.jacobian * (reference * rows.transpose()) / map.determinant;
+    const SmallMatrix on_reference = reference.lazyProduct(rows.transpose());
+    const SmallMatrix tensor = map.jacobian.lazyProduct(on_reference) / map.determinant;
     if (spaces.components == 1)
       values.col(t) = tensor.col(0);
     else
@@ -64,14 +68,17 @@ Eigen::MatrixXd displacement_at_points(const Problem& problem, const Solution& s
   const int d = solution.components;
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(d, mesh.points.size());
   Eigen::VectorXd triangles_at = Eigen::VectorXd::Zero(mesh.points.size());
+  const bool varies = !is_constant(problem.material);
+  Compliance compliance;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     const auto corners = mesh.corners(t);
     const Point centroid = (corners[0] + corners[1] + corners[2]) / 3;
-    const Eigen::MatrixXd slope = gradient(problem, solution, t, centroid);
-    const Eigen::VectorXd mean =
+    if (varies || t == 0) compliance = compliance_at(problem.material, centroid);
+    const SmallMatrix slope = gradient(compliance, solution, t);
+    const SmallVector mean =
         solution.displacement.col(t).reshaped(d, solution.displacement.rows() / d).rowwise().mean();
     for (int k = 0; k < 3; ++k) {
-      values.col(mesh.triangles[t][k]) += mean + slope * (corners[k] - centroid);
+      values.col(mesh.triangles[t][k]) += mean + slope.lazyProduct(corners[k] - centroid);
       ++triangles_at[mesh.triangles[t][k]];
     }
   }

@@ -96,11 +96,6 @@ double Mesh::length(int edge) const {
   return (points[edges[edge][1]] - points[edges[edge][0]]).norm();
 }
 
-std::array<Point, 3> Mesh::corners(int triangle) const {
-  const auto& [a, b, c] = triangles[triangle];
-  return {points[a], points[b], points[c]};
-}
-
 int Mesh::local_edge(int triangle, int edge) const {
   const auto& own = triangle_edges[triangle];
   return static_cast<int>(std::ranges::find(own, edge) - own.begin());

@@ -49,7 +49,10 @@ struct Mesh {
 
   double length(int edge) const;
   /// The corners of a triangle, counter-clockwise.
-  std::array<Point, 3> corners(int triangle) const;
+  std::array<Point, 3> corners(int triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {points[a], points[b], points[c]};
+  }
   Point centroid(int triangle) const;
   /// The number (0, 1, 2) that the edge has in the triangle.
   int local_edge(int triangle, int edge) const;

@@ -9,8 +9,6 @@
 namespace signorini {
 namespace {
 
-using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, 4>;
-
 [[noreturn]] void refuse(const std::string& name, const std::string& detail, const Point& x) {
   throw InvalidProblem({{name, detail + " at " + to_string(x)}});
 }

@@ -35,12 +35,13 @@ int components(const Material& material);
 
 bool is_constant(const Material& material);
 
-/// C at x as a matrix over the entries of a stress row by row: (σ_x, σ_y) for a membrane, (σ_xx, σ_xy,
-/// σ_yx, σ_yy) for an elastic body, where it acts on tensors that need not be symmetric: C on the symmetric
-/// part, and on the skew part the mean compliance of trace-free stresses, which is 1/(2μ) for an isotropic
-/// body. Throws InvalidProblem where the stiffness is not positive definite.
-Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, 4> compliance_at(
-    const Material& material, const Point& x);
+/// C as a matrix over the entries of a stress row by row: (σ_x, σ_y) for a membrane, (σ_xx, σ_xy, σ_yx, σ_yy)
+/// for an elastic body, where it acts on tensors that need not be symmetric: C on the symmetric part, and on
+/// the skew part the mean compliance of trace-free stresses, which is 1/(2μ) for an isotropic body.
+using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4, 4>;
+
+/// C at x. Throws InvalidProblem where the stiffness is not positive definite.
+Compliance compliance_at(const Material& material, const Point& x);
 
 /// C σ at x for the entries (σ_xx, σ_xy, σ_yx, σ_yy), to rounding of its mean and of the rest: as ν → 1/2 the
 /// entries of C lose the digits of the volume's strain.
