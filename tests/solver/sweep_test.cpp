@@ -230,6 +230,21 @@ TEST(Sweep, EntriesOfOtherMaterialsAreSingleSolves) {
   }
 }
 
+/// Loads take a forward and a backward solve and a bound, gaps a dense step.
+TEST(Sweep, OfLoadsIsForeseenToTakeLongerThanOneOfGaps) {
+  Problem problem = problems::paper(Scheme::nonconforming, 32);
+  problem.load_key = "own";
+  const double alone = estimate(problem).seconds;
+  const auto seconds = [&](const std::string& load_key) {
+    std::vector<Variation> sweep(100, data_of(problem, load_key));
+    for (std::size_t i = 0; i < sweep.size(); i += 2) sweep[i].load_key = load_key + "'";
+    return estimate(problem, sweep, {}, {}).problem.seconds;
+  };
+  EXPECT_GE(seconds("other"), 30 * alone);
+  const std::vector<Variation> gaps(100, data_of(problem, "own"));
+  EXPECT_LE(estimate(problem, gaps, {}, {}).problem.seconds, 5 * alone);
+}
+
 TEST(Sweep, AMaterialThatIsNoneFailsAloneOrIsRefusedBefore) {
   Problem problem = problems::paper(Scheme::nonconforming, 6);
   std::vector<Variation> sweep(3, data_of(problem, "loads"));
