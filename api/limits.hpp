@@ -9,7 +9,7 @@
 namespace signorini::api::limits {
 
 // Of a document: arrays and objects within each other, values, and members of objects.
-inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 100'000;
+inline constexpr std::size_t nesting = 64, values = 2'000'000, members = 200'000;
 /// Of them, values that are not in the mesh of a domain.
 inline constexpr std::size_t values_beside_mesh = 300'000;
 /// What the values may take, in bytes: so many, and so many for each byte of the document.
@@ -37,7 +37,7 @@ inline constexpr int divisions = 10'000, refinements = 12, triangles = 20'000'00
 inline constexpr std::size_t sweep_entries = 10'000, study_meshes = 64, batch_problems = 1000;
 /// Of all entries of a sweep together, with those that an entry has from the problem.
 inline constexpr std::size_t sweep_conditions = 50'000;
-/// Of all meshes of a study together, local sizes times sides of the polygon.
-inline constexpr std::size_t study_local_sizes = 200'000;
+/// Of a mesh, and of all meshes of a study together, local sizes times sides of the polygon.
+inline constexpr std::size_t mesh_local_sizes = 1'000'000, study_local_sizes = 200'000;
 
 }  // namespace signorini::api::limits

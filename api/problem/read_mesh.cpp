@@ -113,9 +113,15 @@ MeshRequest read_polygon_mesh(const Object& object, const Polygon& domain) {
   if (const auto size =
           mesh.adaptive ? object.find("size") : object.require("size", "the largest edge length"))
     mesh.fineness = LargestEdge{size->positive().value_or(1)};
-  if (const auto sizes = object.find("sizes"))
+  if (const auto sizes = object.find("sizes")) {
     for (const Value& local : sizes->list("an array of local sizes, {at, radius, size}", limits::local_sizes))
       mesh.sizes.push_back(read_local_size(local));
+    if (mesh.sizes.size() * domain.vertex_count() > limits::mesh_local_sizes)
+      sizes->fault("has " + std::to_string(mesh.sizes.size()) + " local sizes beside " +
+                   std::to_string(domain.vertex_count()) +
+                   " sides of the polygon; multiplied, these may be " +
+                   std::to_string(limits::mesh_local_sizes) + ": take fewer of one of them");
+  }
   return mesh;
 }
 

@@ -142,7 +142,7 @@ MeshSizes sizes_of(const Mesh& mesh) {
 class PredictedSizes::OfPolygon {
  public:
   explicit OfPolygon(const Polygon& polygon)
-      : rings_(polygon), area_(domain_area(rings_)), parts_(parts_of(polygon)) {
+      : rings_(followed_rings(polygon)), area_(domain_area(rings_)), parts_(parts_of(polygon)) {
     const UnitFrame frame(rings_.points);
     const Rings unit = rings_.within(frame);
     stretches_ = narrow_places(unit, near_edges(unit, most_near_pairs), most_in_narrow_places).stretches;

@@ -123,54 +123,80 @@ double domain_area(const Rings& rings) {
   return area;
 }
 
-namespace {
-
-/// Those of which `concerns(i, j)`.
-template <typename Concerns>
-std::vector<std::array<int, 2>> colliding_edges_if(const Concerns& concerns, const Rings& unit,
-                                                   std::size_t most, std::size_t& may_be_tried) {
+std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
   std::vector<Box> boxes;
   for (int e = 0; e < static_cast<int>(unit.points.size()); ++e)
     boxes.push_back(box_around(unit.edge(e), touching));
   std::vector<std::array<int, 2>> pairs;
   for_each_meeting_pair(boxes, [&](int i, int j) {
-    if (!concerns(i, j)) return true;
-    if (may_be_tried == 0) return false;
-    --may_be_tried;
     if (collide(unit, i, j)) pairs.push_back({std::min(i, j), std::max(i, j)});
     return pairs.size() < most;
   });
   return pairs;
 }
 
-}  // namespace
+namespace {
 
-std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most) {
-  std::size_t all = std::numeric_limits<std::size_t>::max();
-  return colliding_edges_if([](int, int) { return true; }, unit, most, all);
+/// Of edges that do not cross.
+double distance_between(const Segment& a, const Segment& b) {
+  return std::min({distance(a[0], b), distance(a[1], b), distance(b[0], a), distance(b[1], a)});
 }
 
-Rings resolved_rings(const Polygon& polygon, double longest_chord) {
-  Rings rings(polygon, longest_chord);
-  // Each round brings a chord four times closer to its arc.
-  constexpr int most_rounds = 8;
+/// How far a chord is from the middle of its arc; 0 of a straight edge.
+double sagitta(const Rings& rings, int edge) {
+  if (rings.circle[edge] < 0) return 0;
+  const auto [from, to] = rings.edge(edge);
+  return (to - from).squaredNorm() / (8 * rings.circles[rings.circle[edge]].radius);
+}
+
+/// Halves chords in rounds as long as there are some that collide with another edge or are, `closeness`
+/// times, farther from their arcs than from another edge.
+Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
   constexpr std::size_t most_points = 15'000;
   // Arcs among so many edges that are near each other are not looked at more closely: they cross, or the
   // polygon is refused for them.
   std::size_t may_be_tried = 500'000;
   for (int round = 0; round < most_rounds && !rings.circles.empty() && rings.points.size() < most_points;
        ++round) {
-    const auto has_chord = [&](int i, int j) { return rings.circle[i] >= 0 || rings.circle[j] >= 0; };
-    const auto pairs = colliding_edges_if(has_chord, rings.within(UnitFrame(rings.points)),
-                                          rings.points.size(), may_be_tried);
-    if (pairs.empty() || may_be_tried == 0) break;
+    const Rings unit = rings.within(UnitFrame(rings.points));
+    std::vector<double> reach;
+    std::vector<Box> boxes;
+    for (int e = 0; e < static_cast<int>(unit.points.size()); ++e) {
+      reach.push_back(closeness * sagitta(unit, e));
+      boxes.push_back(box_around(unit.edge(e), touching + reach.back()));
+    }
     std::vector<std::vector<Point>> middles(rings.points.size());
-    for (const auto& pair : pairs)
-      for (const int edge : pair)
-        if (rings.circle[edge] >= 0) middles[edge] = {rings.middle(edge)};
+    std::size_t halved = 0;
+    for_each_meeting_pair(boxes, [&](int i, int j) {
+      if (rings.circle[i] < 0 && rings.circle[j] < 0) return true;
+      if (may_be_tried == 0) return false;
+      --may_be_tried;
+      const bool are_neighbours = unit.next(i) == j || unit.next(j) == i;
+      const double apart = collide(unit, i, j) ? 0
+                           : are_neighbours    ? std::numeric_limits<double>::infinity()
+                                               : distance_between(unit.edge(i), unit.edge(j));
+      for (const int edge : {i, j}) {
+        if (rings.circle[edge] < 0 || !middles[edge].empty() || apart > reach[edge]) continue;
+        middles[edge] = {rings.middle(edge)};
+        ++halved;
+      }
+      return true;
+    });
+    if (halved == 0 || may_be_tried == 0) break;
     rings = rings.with(middles);
   }
   return rings;
+}
+
+}  // namespace
+
+Rings resolved_rings(const Polygon& polygon, double longest_chord) {
+  // Each round brings a chord four times closer to its arc.
+  return with_chords_halved(Rings(polygon, longest_chord), 0, 8);
+}
+
+Rings followed_rings(const Polygon& polygon) {
+  return with_chords_halved(Rings(polygon), 2, 24);
 }
 
 }  // namespace signorini

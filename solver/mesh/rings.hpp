@@ -69,6 +69,10 @@ double domain_area(const Rings& rings);
 /// themselves do not.
 Rings resolved_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity());
 
+/// The same with so many that the domain is about as narrow between them as between the arcs: none is farther
+/// from its arc than half of its distance from the nearest other edge.
+Rings followed_rings(const Polygon& polygon);
+
 /// Edges of the rings, given in their frame, that have more in common than an end.
 std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most);
 

@@ -131,12 +131,18 @@ std::optional<Estimation::Coarser> Estimation::coarser_mesh(std::int64_t triangl
   return larger;
 }
 
+/// One of no more than `most` triangles, if there is such a one; to find that there is none takes as long.
+std::optional<Mesh> Estimation::make(const MeshRequest& request, std::int64_t most) {
+  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, request, most);
+  may_be_made_ -= mesh ? static_cast<std::int64_t>(mesh->triangles.size()) : most;
+  return mesh;
+}
+
 /// By a mesh of the shape of those that it asks for.
 void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t triangles) {
-  std::optional<Mesh> mesh = make_small_mesh(problem_.domain, coarse, most_of_own_shape);
+  const std::optional<Mesh> mesh = make(coarse, most_of_own_shape);
   if (!mesh) return;
-  may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
-  cut_finer(std::move(*mesh), triangles, Shows::another);
+  cut_finer(*mesh, triangles, Shows::another);
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {
@@ -189,12 +195,8 @@ Counts Estimation::count() {
   const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
   const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
-  if (!has_formula && may_be_made_ > 0 && sizes.triangles <= most)
-    mesh = make_small_mesh(problem_.domain, problem_.mesh, most);
-  if (mesh) {
-    may_be_made_ -= static_cast<std::int64_t>(mesh->triangles.size());
-    sizes = sizes_of(*mesh);
-  }
+  if (!has_formula && may_be_made_ > 0 && sizes.triangles <= most) mesh = make(problem_.mesh, most);
+  if (mesh) sizes = sizes_of(*mesh);
   const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
   if (mesh) {
     cut_finer(*mesh, triangles, Shows::itself);

@@ -81,6 +81,7 @@ class Estimation {
   void cut(const Mesh& mesh, Shows shows = Shows::itself);
   void cut(const MeshData& data);
   void cut_finer(Mesh mesh, std::int64_t triangles, Shows shows);
+  std::optional<Mesh> make(const MeshRequest& request, std::int64_t most);
   void cut_coarser(const MeshRequest& coarse, std::int64_t triangles);
   std::optional<Coarser> coarser_mesh(std::int64_t triangles);
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;

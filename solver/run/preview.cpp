@@ -66,7 +66,7 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
   const Mesh mesh = stabilized(problem, refine(*small, start.refine));
   if (problem.mesh.adaptive)
     require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));
-  constexpr double most_steps = 2e6;
+  constexpr double most_steps = 1e6;
   DataCheck check = check_data(problem, sweep, mesh, most_steps, nullptr);
   if (!check.faults.empty()) throw InvalidProblem(std::move(check.faults));
   std::vector<std::string> left;

@@ -28,7 +28,7 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 /// Steps that may be taken, see steps_of().
-constexpr double kAll = std::numeric_limits<double>::infinity(), kOnCoarseMesh = 1e6;
+constexpr double kAll = std::numeric_limits<double>::infinity(), kOnCoarseMesh = 5e5;
 
 /// What encloses its values everywhere tells so, in one look.
 bool is_known_to_be_finite(const Field& field, const Mesh& mesh) {

@@ -251,7 +251,7 @@ TEST(Budget, FaultsAreNotCollectedForEver) {
   json unknown = square();
   for (int i = 0; i < 90'000; ++i) unknown["u" + std::to_string(i)] = 1;
   EXPECT_EQ(found_soon(unknown), "/u0");
-  for (int i = 0; i < 20'000; ++i) unknown["v" + std::to_string(i)] = 1;
+  for (int i = 0; i < 120'000; ++i) unknown["v" + std::to_string(i)] = 1;
   EXPECT_EQ(found_soon(unknown), "malformed");
   json parts = polygon(ring(2000), {{"size", 1}});
   for (int i = 0; i < 2000; ++i) parts["boundary"]["sidf" + std::to_string(i)] = {{"type", "fixed"}};
@@ -293,6 +293,32 @@ TEST(Budget, CirclesThatCrossAreNotResolvedForEver) {
   problem["domain"]["vertices"] = star;
   for (json& hole : problem["domain"]["holes"]) hole["circle"]["radius"] = 1.5;
   EXPECT_NE(found_soon(problem), "malformed");
+}
+
+/// Chords that follow them are needed to know how narrow the domain is between arcs; a study knows it once.
+TEST(Budget, ArcsThatNearlyTouchAreMeasuredOnce) {
+  const auto circle = [](double x, double radius) {
+    return json{{"circle", {{"centre", {x, 0.02}}, {"radius", radius}}}};
+  };
+  json plate = polygon({{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {{"size", 5}});
+  plate["domain"]["holes"] = {circle(0.01, 0.3), circle(0.610000003, 0.3)};
+  plate["study"] = {{"schemes", {"conforming", "nonconforming"}}};
+  for (int i = 0; i < 64; ++i) plate["study"]["sizes"].push_back(5 - 0.01 * i);
+  EXPECT_EQ(found_soon(plate), "");
+  json disc = polygon(ring(1000), {{"size", 5}});
+  disc["domain"]["holes"] = {
+      {{"circle", {{"centre", {0, 0}}, {"radius", std::cos(std::numbers::pi / 1000) - 1e-6}}}}};
+  EXPECT_NE(found_soon(disc), "malformed");
+}
+
+/// Of a local size all of the sides are asked how much of them it reaches.
+TEST(Budget, AMeshWithLocalSizesIsCountedOrRefused) {
+  json problem = polygon(ring(9990), {{"size", 1}});
+  for (int i = 0; i < 100; ++i)
+    problem["mesh"]["sizes"].push_back({{"at", {std::cos(i), std::sin(i)}}, {"radius", 10}, {"size", 1e-3}});
+  EXPECT_NE(found_soon(problem), "malformed");
+  problem["mesh"]["sizes"].push_back({{"at", {0, 0}}, {"radius", 10}, {"size", 1e-3}});
+  EXPECT_EQ(found_soon(problem), "/mesh/sizes");
 }
 
 TEST(Budget, AStudyWithLocalSizesIsCountedOrRefused) {

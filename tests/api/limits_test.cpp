@@ -58,6 +58,7 @@ TEST(Limits, OfSumsAreDescribed) {
        {limits::texts, limits::values, limits::values_beside_mesh, limits::members, limits::nesting,
         limits::digits}},
       {"Study/description", {limits::study_local_sizes}},
+      {"MeshRequest/properties/sizes/description", {limits::mesh_local_sizes}},
       {"Polygon/description", {limits::vertices, limits::arcs}},
       {"Problem/properties/sweep/description", {limits::sweep_conditions}}};
   for (const auto& [pointer, all] : descriptions)

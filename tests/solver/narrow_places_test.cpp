@@ -103,6 +103,27 @@ TEST(NarrowPlaces, CutTheBoundaryToo) {
   }
 }
 
+/// Two discs in a plate, or a disc and a side, so far from each other.
+Polygon plate_with(const std::vector<std::pair<Point, double>>& discs) {
+  Polygon plate{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}, {}};
+  for (const auto& [centre, radius] : discs) {
+    plate.arcs.push_back({static_cast<int>(plate.holes.size()) + 1, 0, centre, false});
+    plate.holes.push_back({centre + Point(0, radius)});
+  }
+  return plate;
+}
+
+/// The chords that a polygon starts with leave much more room between arcs than these.
+TEST(NarrowPlaces, BetweenArcsAreForeseen) {
+  for (const double gap : {1e-1, 1e-2, 1e-4, 1e-6, 1e-7}) {
+    SCOPED_TRACE(gap);
+    for (const Polygon& polygon :
+         {plate_with({{{-0.32, 0.02}, 0.3}, {{0.28 + gap, 0.02}, 0.3}}), plate_with({{{0, 0.3}, 0.7 - gap}}),
+          plate_with({{{0, 0}, 0.5}, {{0.55 + gap, 0}, 0.05}})})
+      expect_foreseen(polygon, MeshRequest(LargestEdge{5}), 0.8);
+  }
+}
+
 /// Sides of unlike lengths are halved to unlike pieces, whose ends do not stand opposite: that takes more.
 TEST(NarrowPlaces, BetweenSidesOfUnlikeLengthsAreCutABitMore) {
   expect_foreseen(beside(1e-4), MeshRequest(LargestEdge{1}), 0.7);
