@@ -149,8 +149,8 @@ double sagitta(const Rings& rings, int edge) {
   return (to - from).squaredNorm() / (8 * rings.circles[rings.circle[edge]].radius);
 }
 
-/// Halves chords in rounds as long as there are some that collide with another edge or are, `closeness`
-/// times, farther from their arcs than from another edge.
+/// Halves chords in rounds as long as some collide with another edge, or lie so close to one that `closeness`
+/// times the distance from their arc is more.
 Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
   constexpr std::size_t most_points = 15'000;
   // Arcs among so many edges that are near each other are not looked at more closely: they cross, or the
