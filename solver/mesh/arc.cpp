@@ -59,7 +59,8 @@ std::string why_no_arc(const Point& from, const Point& to, const Point& centre) 
   if (!centre.allFinite()) return "must be finite";
   const double one = (from - centre).norm(), other = (to - centre).norm(), chord = (to - from).norm();
   if (centre == from || centre == to) return "is an end of the arc: the radius is zero";
-  if (!std::isnormal(one * one))
+  // What the angle is made of is at most four times as much.
+  if (!std::isnormal(16 * one * one) || !std::isnormal(16 * other * other))
     return "makes the radius too large or too small for its square to be a number: use other units";
   if (from == to) return {};
   if (std::max(one, other) > kStraight * chord)
