@@ -138,14 +138,8 @@ class Builder : public nlohmann::json_sax<json> {
   }
   bool binary(binary_t&) override { return false; }  // JSON text has none
 
-  bool start_object(std::size_t) override {
-    take_memory(kOfObject);
-    return open(json::object());
-  }
-  bool start_array(std::size_t) override {
-    take_memory(kOfArray);
-    return open(json::array());
-  }
+  bool start_object(std::size_t) override { return open(json::object()); }
+  bool start_array(std::size_t) override { return open(json::array()); }
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
 
@@ -182,6 +176,7 @@ class Builder : public nlohmann::json_sax<json> {
 
   bool open(json container) {
     if (open_.size() == limits::nesting) throw nested_too_deeply();
+    take_memory(container.is_object() ? kOfObject : kOfArray);
     open_.push_back(insert(std::move(container)));
     names_.emplace_back();
     return true;
@@ -223,11 +218,10 @@ class Builder : public nlohmann::json_sax<json> {
 
   /// A mesh takes some seven times the length of its text.
   void take_memory(std::size_t bytes) {
-    if ((memory_ += bytes) > limits::memory + limits::memory_of_byte * text_.size())
-      throw MalformedJson(
-          "the values in the body would take more than " +
-          std::to_string((limits::memory + limits::memory_of_byte * text_.size()) / 1'000'000) +
-          " MB: no problem of its length has as many");
+    const std::size_t most = limits::memory + limits::memory_of_byte * text_.size();
+    if ((memory_ += bytes) > most)
+      throw MalformedJson("the values in the body would take more than " + std::to_string(most / 1'000'000) +
+                          " MB: no problem of its length has as many");
   }
 
   /// The pointer of the innermost open container.

@@ -23,10 +23,6 @@ std::vector<const std::vector<Point>*> given_rings(const Polygon& polygon) {
   return rings;
 }
 
-std::string pointer_to_ring(std::size_t ring) {
-  return ring == 0 ? "/domain/vertices" : "/domain/holes/" + std::to_string(ring - 1);
-}
-
 std::vector<Fault> faults_of_vertices(const Polygon& polygon) {
   const auto rings = given_rings(polygon);
   std::vector<Fault> faults;
@@ -43,10 +39,11 @@ std::vector<Fault> faults_of_vertices(const Polygon& polygon) {
     const bool has_arc =
         std::ranges::any_of(polygon.arcs, [&](const Arc& arc) { return arc.ring == static_cast<int>(r); });
     if (rings[r]->size() < 3 && (rings[r]->empty() || !has_arc))
-      faults.push_back({pointer_to_ring(r), "must have at least three vertices, or an arc"});
+      faults.push_back(
+          {Rings::pointer_to_ring(static_cast<int>(r)), "must have at least three vertices, or an arc"});
     for (std::size_t p = 0; p < rings[r]->size(); ++p)
       if (!(*rings[r])[p].allFinite())
-        infinite.add(pointer_to_ring(r) + '/' + std::to_string(p), "must be finite");
+        infinite.add(Rings::pointer_to_ring(static_cast<int>(r)) + '/' + std::to_string(p), "must be finite");
   }
   std::move(infinite).append_to(faults);
   return faults;
@@ -63,7 +60,7 @@ std::vector<Fault> faults_of_arcs(const Polygon& polygon) {
     if (reason.empty()) continue;
     // What has one vertex only may have been given as a circle.
     const std::string where = ring.size() == 1 ? "" : '/' + std::to_string(arc.vertex) + "/arc/centre";
-    faults.add(pointer_to_ring(arc.ring) + where, reason);
+    faults.add(Rings::pointer_to_ring(arc.ring) + where, reason);
   }
   std::vector<Fault> all;
   std::move(faults).append_to(all);

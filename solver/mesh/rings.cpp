@@ -10,7 +10,6 @@
 namespace signorini {
 namespace {
 
-/// Whether two edges have more in common than an end.
 /// Both ends lie so far on one side of the line that nothing between them touches it.
 bool lies_beside(const Segment& segment, const Segment& line) {
   const double first = twice_area(line[0], line[1], segment[0]),
@@ -19,6 +18,7 @@ bool lies_beside(const Segment& segment, const Segment& line) {
   return std::min(first, second) > reach || std::max(first, second) < -reach;
 }
 
+/// Whether two edges have more in common than an end.
 bool collide(const Rings& unit, int i, int j) {
   const Segment a = unit.edge(i), b = unit.edge(j);
   if (lies_beside(a, b) || lies_beside(b, a)) return false;
@@ -57,7 +57,7 @@ Rings::Rings(const Polygon& polygon, double longest_chord) : begin{0}, first_ver
   *this = with(on_edges);
 }
 
-std::string Rings::pointer_to_ring(int number) const {
+std::string Rings::pointer_to_ring(int number) {
   return number == 0 ? "/domain/vertices" : "/domain/holes/" + std::to_string(number - 1);
 }
 
@@ -166,7 +166,7 @@ Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
       boxes.push_back(box_around(unit.edge(e), touching + reach.back()));
     }
     std::vector<std::vector<Point>> middles(rings.points.size());
-    std::size_t halved = 0;
+    bool are_halved = false;
     for_each_meeting_pair(boxes, [&](int i, int j) {
       if (rings.circle[i] < 0 && rings.circle[j] < 0) return true;
       if (may_be_tried == 0) return false;
@@ -178,11 +178,11 @@ Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
       for (const int edge : {i, j}) {
         if (rings.circle[edge] < 0 || !middles[edge].empty() || apart > reach[edge]) continue;
         middles[edge] = {rings.middle(edge)};
-        ++halved;
+        are_halved = true;
       }
       return true;
     });
-    if (halved == 0 || may_be_tried == 0) break;
+    if (!are_halved || may_be_tried == 0) break;
     rings = rings.with(middles);
   }
   return rings;

@@ -28,7 +28,7 @@ struct Rings {
   Segment edge(int from) const { return {points[from], points[next(from)]}; }
 
   /// The JSON pointer of a ring, and of the vertex at which the side of an edge begins.
-  std::string pointer_to_ring(int number) const;
+  static std::string pointer_to_ring(int number);
   std::string pointer_to(int point) const;
 
   /// `the edge` or `the arc`, and from where to where the polygon has it.

@@ -61,8 +61,7 @@ Estimate with_sweep(const Problem& problem, const std::vector<Variation>& sweep,
   // Another material makes an operator. What is left of a solve otherwise is as measured: half of it for
   // other loads, and for quantities, which need the fields; next to nothing for gaps.
   constexpr double of_loads = 0.5, of_gaps = 0.02;
-  const std::size_t operators = operators_of(sweep),
-                    without = sweep.size() - std::min(sweep.size(), operators),
+  const std::size_t operators = operators_of(sweep), without = sweep.size() - operators,
                     loads =
                         problem.quantities.empty() ? std::min(without, other_loads(problem, sweep)) : without;
   const double quantities = seconds_of_quantities(problem, static_cast<double>(most.triangles));

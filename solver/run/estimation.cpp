@@ -140,9 +140,8 @@ std::optional<Mesh> Estimation::make(const MeshRequest& request, std::int64_t mo
 
 /// By a mesh of the shape of those that it asks for.
 void Estimation::cut_coarser(const MeshRequest& coarse, std::int64_t triangles) {
-  const std::optional<Mesh> mesh = make(coarse, most_of_own_shape);
-  if (!mesh) return;
-  cut_finer(*mesh, triangles, Shows::another);
+  if (std::optional<Mesh> mesh = make(coarse, most_of_own_shape))
+    cut_finer(std::move(*mesh), triangles, Shows::another);
 }
 
 std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) const {

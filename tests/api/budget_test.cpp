@@ -203,7 +203,7 @@ TEST(Budget, RefinementsAreCountedAndNotMade) {
   EXPECT_EQ(found_soon(membrane_on(two, {{"refine", 11}})), "");
 }
 
-TEST(Budget, OnlyADomainHasMillionsOfValues) {
+TEST(Budget, OnlyAMeshHasMillionsOfValues) {
   json entries = square();
   entries["sweep"] = json(350'000, json::object());
   EXPECT_EQ(found_soon(entries), "malformed");
