@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "certify/data/law_quality.hpp"
 #include "fem/triangle_pieces.hpp"
 #include "mesh/mesh.hpp"
 #include "problem/material.hpp"
@@ -13,16 +14,10 @@
 
 namespace signorini {
 
-/// A part of a triangle on which stiffness E and compliance C are known: they differ from polynomials of
-/// degree k − 1 by at most errors[k] times themselves, as quadratic forms.
-struct LawPiece {
-  static constexpr int kOrders = 11;
-
+/// A part of a triangle, and how well the law is known on it.
+struct LawPiece : LawQuality {
   TrianglePiece place;
-  std::array<double, kOrders> errors{};
-  double softest = 0;   ///< C is at most this; infinite where E is not known to be positive definite
-  double stiffest = 0;  ///< E is at most this
-  bool jumps = false;   ///< or has a kink, or may have one
+  bool jumps = false;  ///< or has a kink, or may have one
 
   bool is_known() const { return std::isfinite(errors.back() + softest + stiffest); }
 
