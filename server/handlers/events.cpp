@@ -122,10 +122,9 @@ class SolveEvents : public EventSource {
   bool tell_solve(std::string& text, const LiveSolve& live) {
     const std::int64_t run = run_of(live.started());
     if (place_.run != run) place_ = {run};
-    const Progress progress = live.progress();
+    const auto [progress, rows] = live.advance_after(place_.rows, most_rows);
     if (!told_ || differ(*told_, progress)) append_state(text, progress);
     told_ = progress;
-    const std::vector<Iteration> rows = live.history_after(place_.rows, most_rows);
     for (const Iteration& row : rows) {
       ++place_.rows;
       append_iteration(text, place_, progress, row);

@@ -25,9 +25,8 @@ struct Wish {
 struct Heartbeat {
   std::string job;
   std::uint64_t attempt = 0;
-  Progress progress;
-  std::size_t told = 0;               ///< iterations that earlier heartbeats told
-  std::vector<Iteration> iterations;  ///< those since then
+  std::size_t told = 0;  ///< iterations that earlier heartbeats told
+  Advance advance;       ///< with the iterations since then
 };
 
 /// What has become of a claim.
@@ -51,8 +50,7 @@ struct Found {
   JobStatus status = JobStatus::queued;
   std::uint64_t attempt = 0;  ///< the last one; 0: none
   std::optional<Time> started;
-  Progress progress;
-  std::vector<Iteration> iterations;  ///< wanted and not known yet; all, if the attempt is another one
+  Advance advance;  ///< with the iterations that are wanted and not known yet; all, if the attempt is another
 };
 
 /// Entries of a sweep that are to be a job of their own.

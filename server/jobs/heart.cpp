@@ -55,7 +55,7 @@ void Heart::beat() {
       }
       Pulse& pulse = pulses_.at(held[i].job);
       pulse.renewed = now;
-      pulse.told += beats[i].iterations.size();
+      pulse.told += beats[i].advance.iterations.size();
       if (standings[i] == Standing::to_be_cancelled) held[i].live->cancel();
     }
     fleet_.rescue();
@@ -76,8 +76,8 @@ std::vector<Heartbeat> Heart::heartbeats(const std::vector<Held>& held) {
     const bool is_new = known == pulses_.end() || known->second.attempt != each.attempt;
     const Pulse pulse = is_new ? Pulse{each.attempt, Clock::now() - between_beats(fleet_)} : known->second;
     pulses[each.job] = pulse;
-    beats.push_back({each.job, each.attempt, each.live->progress(), pulse.told,
-                     each.live->history_after(pulse.told, most_iterations)});
+    beats.push_back(
+        {each.job, each.attempt, pulse.told, each.live->advance_after(pulse.told, most_iterations)});
   }
   pulses_ = std::move(pulses);
   return beats;

@@ -36,7 +36,8 @@ void LiveSolve::studied(std::size_t done, std::size_t count) {
   study_ = count;
 }
 
-void LiveSolve::follow(const Progress& progress, const std::vector<Iteration>& iterations) {
+void LiveSolve::follow(const Advance& advance) {
+  const auto& [progress, iterations] = advance;
   const std::lock_guard lock(mutex_);
   phase_ = progress.phase;
   level_ = progress.level;
@@ -51,6 +52,10 @@ void LiveSolve::follow(const Progress& progress, const std::vector<Iteration>& i
 
 Progress LiveSolve::progress() const {
   const std::lock_guard lock(mutex_);
+  return progress_now();
+}
+
+Progress LiveSolve::progress_now() const {
   Progress progress;
   progress.phase = phase_;
   progress.level = level_;
@@ -79,6 +84,15 @@ std::vector<Iteration> LiveSolve::history() const {
 
 std::vector<Iteration> LiveSolve::history_after(std::size_t first, std::size_t most) const {
   const std::lock_guard lock(mutex_);
+  return history_now(first, most);
+}
+
+Advance LiveSolve::advance_after(std::size_t first, std::size_t most) const {
+  const std::lock_guard lock(mutex_);
+  return {progress_now(), history_now(first, most)};
+}
+
+std::vector<Iteration> LiveSolve::history_now(std::size_t first, std::size_t most) const {
   const std::size_t begin = std::min(first, history_.size());
   const std::size_t end = begin + std::min(most, history_.size() - begin);
   return {history_.begin() + static_cast<std::ptrdiff_t>(begin),

@@ -26,6 +26,12 @@ struct Progress {
 /// relative contact residuals.
 double residual(const Iteration& iteration);
 
+/// How far a solve is, and iterations that it has done until then.
+struct Advance {
+  Progress progress;
+  std::vector<Iteration> iterations;
+};
+
 /// A solve that runs: written by its worker, read by everybody.
 class LiveSolve : public Observer {
  public:
@@ -46,18 +52,23 @@ class LiveSolve : public Observer {
 
   /// Takes over how far a solve is that another process runs, and what it has iterated since the last time,
   /// as far as that is asked for.
-  void follow(const Progress& progress, const std::vector<Iteration>& iterations);
+  void follow(const Advance& advance);
 
   Progress progress() const;
   std::size_t iterations() const;
   std::vector<Iteration> history() const;
   /// At most so many iterations after the first ones.
   std::vector<Iteration> history_after(std::size_t first, std::size_t most) const;
+  /// Both at one moment: no iteration is of a later phase than the one that is told.
+  Advance advance_after(std::size_t first, std::size_t most) const;
 
   /// When it was started, which tells it from another solve of the same job.
   Time started() const { return started_; }
 
  private:
+  Progress progress_now() const;
+  std::vector<Iteration> history_now(std::size_t first, std::size_t most) const;
+
   const Time started_;
   std::atomic<bool> cancelled_ = false, lost_ = false;
   mutable std::mutex mutex_;

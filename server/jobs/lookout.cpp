@@ -77,8 +77,10 @@ void Lookout::follow(const Found& found) {
   Mirror& mirror = mirrors_[found.job];
   const bool is_new = !mirror.live || mirror.attempt != found.attempt;
   if (is_new) mirror = {found.attempt, 0, std::make_shared<LiveSolve>(*found.started)};
-  mirror.live->follow(has_ended(found.status) ? mirror.live->progress() : found.progress, found.iterations);
-  mirror.known += found.iterations.size();
+  Advance advance = found.advance;
+  if (has_ended(found.status)) advance.progress = mirror.live->progress();
+  mirror.live->follow(advance);
+  mirror.known += advance.iterations.size();
   // Not before: a solve of this process that has just ended is told of as over by others, with what is there
   // then.
   if (is_new) ears_.begun(found.job, mirror.live);

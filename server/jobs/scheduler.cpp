@@ -187,7 +187,7 @@ LiveSolves Scheduler::look_elsewhere(const std::vector<std::string>& ids, bool i
   for (const Found& found : fleet_->look(sought)) {
     if (found.status != JobStatus::running || !found.started) continue;
     const auto live = std::make_shared<LiveSolve>(*found.started);
-    live->follow(found.progress, found.iterations);
+    live->follow(found.advance);
     lives[found.job] = live;
   }
   return lives;

@@ -16,7 +16,7 @@ class EndedElsewhere : public Fleet {
     std::vector<Found> all;
     for (const Sought& each : sought)
       all.push_back(
-          {each.job, JobStatus::succeeded, 1, Time(1s), {}, std::vector<Iteration>(2 - each.known)});
+          {each.job, JobStatus::succeeded, 1, Time(1s), {{}, std::vector<Iteration>(2 - each.known)}});
     return all;
   }
   bool wait_for_hint(std::chrono::milliseconds) override { return false; }

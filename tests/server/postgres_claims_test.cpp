@@ -214,7 +214,7 @@ TEST_F(PostgresClaims, TellOfAnEndedJobInOnePiece) {
   Heartbeat beat;
   beat.job = "a";
   beat.attempt = claim.attempt;
-  beat.iterations.resize(2);
+  beat.advance.iterations.resize(2);
   for (beat.told = 0; beat.told < 6; beat.told += 2) a_.fleet()->renew(std::span(&beat, 1));
   EXPECT_EQ(ask("SELECT FROM progress").size(), 3);
   Ending ending = success();
@@ -222,7 +222,7 @@ TEST_F(PostgresClaims, TellOfAnEndedJobInOnePiece) {
   a_.finish(claim, ending);
   EXPECT_EQ(ask("SELECT FROM progress").size(), 1);
   const Sought sought{"a", claim.attempt, 4};
-  EXPECT_EQ(b_.fleet()->look(std::span(&sought, 1)).front().iterations.size(), 3u);
+  EXPECT_EQ(b_.fleet()->look(std::span(&sought, 1)).front().advance.iterations.size(), 3u);
 }
 
 TEST_F(PostgresClaims, HowFarASolveIsIsKnownWithoutItsIterations) {
@@ -230,13 +230,36 @@ TEST_F(PostgresClaims, HowFarASolveIsIsKnownWithoutItsIterations) {
   Heartbeat beat;
   beat.job = "a";
   beat.attempt = a_.claim()->attempt;
-  beat.iterations.resize(5);
-  beat.progress.iteration = 5;
+  beat.advance.iterations.resize(5);
+  beat.advance.progress.iteration = 5;
   a_.fleet()->renew(std::span(&beat, 1));
   const Sought sought{.job = "a", .iterations = false};
   const Found found = b_.fleet()->look(std::span(&sought, 1)).front();
-  EXPECT_EQ(found.progress.iteration, 5);
-  EXPECT_TRUE(found.iterations.empty());
+  EXPECT_EQ(found.advance.progress.iteration, 5);
+  EXPECT_TRUE(found.advance.iterations.empty());
+}
+
+/// While its runner goes on: never an iteration that its state does not know.
+TEST_F(PostgresClaims, TheStateAndTheIterationsOfASolveAreOfOneMoment) {
+  add("a", "anne");
+  const std::uint64_t attempt = a_.claim()->attempt;
+  std::jthread runner([&](const std::stop_token& stop) {
+    Heartbeat beat;
+    beat.job = "a";
+    beat.attempt = attempt;
+    beat.advance.iterations.resize(1);
+    for (; !stop.stop_requested(); ++beat.told) {
+      beat.advance.progress.iteration = static_cast<int>(beat.told) + 1;
+      a_.fleet()->renew(std::span(&beat, 1));
+    }
+  });
+  std::size_t known = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Sought sought{"a", attempt, known};
+    const Found found = b_.fleet()->look(std::span(&sought, 1)).front();
+    known += found.advance.iterations.size();
+    ASSERT_EQ(found.advance.progress.iteration, known);
+  }
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ nlohmann::json ServiceTest::status_of(const std::string& id) {
 
 nlohmann::json ServiceTest::wait_for(const std::string& id, const std::string& status) {
   nlohmann::json document;
-  for (int i = 0; i < 500; ++i) {
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::chrono::steady_clock::now() < patience) {
     document = status_of(id);
     if (document.at("status") == status) return document;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -131,8 +132,11 @@ nlohmann::json expect_problem(const httplib::Result& result, int status) {
 
 std::string send_raw(int port, const std::string& bytes) {
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  const timeval patience{1, 0};
-  setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  const auto wait_at_most = [&](int seconds) {
+    const timeval patience{seconds, 0};
+    setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+  };
+  wait_at_most(60);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
@@ -145,6 +149,7 @@ std::string send_raw(int port, const std::string& bytes) {
   char buffer[4096];
   for (ssize_t n = 0; (n = ::recv(socket, buffer, sizeof(buffer), 0)) > 0;) {
     reply.append(buffer, static_cast<std::size_t>(n));
+    wait_at_most(1);
   }
   ::close(socket);
   return reply;

@@ -77,7 +77,7 @@ class ServiceTest : public testing::Test {
   /// Posts and returns the id.
   std::string submit(const std::string& title);
   nlohmann::json status_of(const std::string& id);
-  /// Waits until the job has this status, or five seconds.
+  /// Waits until the job has this status, or a minute, for machines are slow at times.
   nlohmann::json wait_for(const std::string& id, const std::string& status);
 
   RunningService service_;
@@ -87,7 +87,8 @@ class ServiceTest : public testing::Test {
 /// The body as JSON, after a check that it is a problem with this status.
 nlohmann::json expect_problem(const httplib::Result& result, int status);
 
-/// Sends the bytes as they are and returns what comes until the server closes or is silent for a second.
+/// Sends the bytes as they are and returns what comes until the server closes or is silent: for a
+/// second, or for a minute before it has said anything.
 std::string send_raw(int port, const std::string& bytes);
 
 }  // namespace signorini::server

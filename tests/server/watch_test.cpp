@@ -2,6 +2,9 @@
 
 #include "server/jobs/watch.hpp"
 
+#include <limits>
+#include <thread>
+
 #include <gtest/gtest.h>
 
 namespace signorini::server::watch_test {
@@ -22,6 +25,22 @@ TEST(Watch, KeepsWhatThisProcessKnowsOfItsOwnSolve) {
   EXPECT_EQ(watch.live(), own);
   watch.begin_elsewhere(next);
   EXPECT_EQ(watch.live(), next);
+}
+
+/// Who follows a solve is told of no iteration before the phase that it belongs to.
+TEST(LiveSolve, TellsItsStateAndItsIterationsOfOneMoment) {
+  LiveSolve live(Time{1s});
+  std::jthread solve([&](const std::stop_token& stop) {
+    for (Iteration iteration; !stop.stop_requested();) {
+      ++iteration.number;
+      live.iterated(iteration);
+    }
+  });
+  for (std::size_t told = 0, looks = 0; looks < 2000; ++looks) {
+    const Advance advance = live.advance_after(told, std::numeric_limits<std::size_t>::max());
+    told += advance.iterations.size();
+    ASSERT_EQ(advance.progress.iteration, told);
+  }
 }
 
 }  // namespace

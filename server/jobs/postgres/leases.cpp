@@ -151,10 +151,10 @@ std::vector<Standing> Leases::renew(std::span<const Heartbeat> heartbeats) {
   const Values values(
       lease_.count(), each([](const Heartbeat& beat) { return beat.job; }),
       each([](const Heartbeat& beat) { return std::to_string(beat.attempt); }),
-      each([](const Heartbeat& beat) { return hexadecimal(pack_progress(beat.progress)); }),
+      each([](const Heartbeat& beat) { return hexadecimal(pack_progress(beat.advance.progress)); }),
       each([](const Heartbeat& beat) { return std::to_string(beat.told); }),
-      each([](const Heartbeat& beat) { return std::to_string(beat.iterations.size()); }),
-      each([](const Heartbeat& beat) { return hexadecimal(pack_iterations(beat.iterations)); }));
+      each([](const Heartbeat& beat) { return std::to_string(beat.advance.iterations.size()); }),
+      each([](const Heartbeat& beat) { return hexadecimal(pack_iterations(beat.advance.iterations)); }));
   static const std::string sql =
       "WITH beats AS (SELECT * FROM unnest($2::text[], $3::bigint[], $4::bytea[], $5::integer[], "
       "$6::integer[], "
@@ -228,47 +228,38 @@ void Leases::rescue() {
 
 std::vector<Found> Leases::look(std::span<const Sought> asked) const {
   std::vector<Found> all;
-  std::vector<Sought> sought, followed;
+  std::vector<Sought> sought;
   std::ranges::copy_if(asked, std::back_inserter(sought), may_be_an_id, &Sought::job);
-  std::ranges::copy_if(sought, std::back_inserter(followed), &Sought::iterations);
-  const Values values(texts(followed, [](const Sought& each) { return each.job; }),
-                      texts(followed, [](const Sought& each) { return std::to_string(each.attempt); }),
-                      texts(followed, [](const Sought& each) { return std::to_string(each.known); }));
-  static const std::string of_jobs =
-      "SELECT id, status, jobs.attempt, started, state FROM jobs LEFT JOIN leases "
-      "ON leases.job = id AND leases.attempt = jobs.attempt WHERE id = ANY($1::text[])";
-  static const std::string of_iterations =
-      "SELECT progress.job, progress.attempt, first, iterations, known_of_it FROM "
-      "unnest($1::text[], $2::bigint[], $3::integer[]) AS sought (job, attempt, known) "
-      "JOIN jobs ON id = sought.job JOIN progress ON progress.job = id AND progress.attempt = jobs.attempt, "
+  const Values values(texts(sought, [](const Sought& each) { return each.job; }),
+                      texts(sought, [](const Sought& each) { return std::to_string(each.attempt); }),
+                      texts(sought, [](const Sought& each) { return std::to_string(each.known); }),
+                      texts(sought, [](const Sought& each) { return each.iterations ? "t" : "f"; }));
+  // One statement, so that the state of a solve and its iterations are of one moment.
+  static const std::string sql =
+      "SELECT id, status, jobs.attempt, started, state, first, pieces.iterations, known_of_it FROM "
+      "unnest($1::text[], $2::bigint[], $3::integer[], $4::boolean[]) "
+      "AS sought (job, attempt, known, iterations) JOIN jobs ON id = sought.job "
+      "LEFT JOIN leases ON leases.job = id AND leases.attempt = jobs.attempt, "
       "LATERAL (SELECT CASE jobs.attempt WHEN sought.attempt THEN known ELSE 0 END AS known_of_it) AS "
       "of_attempt "
-      "WHERE first + count > known_of_it ORDER BY progress.job, first";
+      "LEFT JOIN LATERAL (SELECT first, progress.iterations FROM progress WHERE sought.iterations AND "
+      "progress.job = id AND progress.attempt = jobs.attempt AND first + count > known_of_it) AS pieces "
+      "ON true ORDER BY id, first";
   database_.with([&](Connection& connection) {
     all.clear();
-    // What has ended by then has all its iterations a moment later.
-    const Rows jobs =
-        connection.run(of_jobs, Values(texts(sought, [](const Sought& each) { return each.job; })));
-    std::map<std::string, std::size_t> places;
-    for (int row = 0; row < jobs.size(); ++row) {
-      Found found;
-      found.job = jobs.text(row, 0);
-      found.status = job_status(jobs.view(row, 1)).value_or(JobStatus::failed);
-      found.attempt = static_cast<std::uint64_t>(jobs.integer(row, 2));
-      found.started = time_of(jobs, row, 3);
-      if (!jobs.is_null(row, 4)) found.progress = unpack_progress(jobs.text(row, 4));
-      places[found.job] = all.size();
-      all.push_back(std::move(found));
-    }
-    if (followed.empty()) return true;
-    const Rows pieces = connection.run(of_iterations, values);
-    for (int row = 0; row < pieces.size(); ++row) {
-      const auto place = places.find(pieces.text(row, 0));
-      if (place == places.end()) continue;
-      Found& found = all[place->second];
-      if (pieces.integer(row, 1) != static_cast<std::int64_t>(found.attempt)) continue;
-      append_piece(unpack_iterations(pieces.text(row, 3)), pieces.integer(row, 2), pieces.integer(row, 4),
-                   found.iterations);
+    const Rows rows = connection.run(sql, values);
+    for (int row = 0; row < rows.size(); ++row) {
+      if (all.empty() || all.back().job != rows.view(row, 0)) {
+        Found& found = all.emplace_back();
+        found.job = rows.text(row, 0);
+        found.status = job_status(rows.view(row, 1)).value_or(JobStatus::failed);
+        found.attempt = static_cast<std::uint64_t>(rows.integer(row, 2));
+        found.started = time_of(rows, row, 3);
+        if (!rows.is_null(row, 4)) found.advance.progress = unpack_progress(rows.text(row, 4));
+      }
+      if (rows.is_null(row, 5)) continue;
+      append_piece(unpack_iterations(rows.text(row, 6)), rows.integer(row, 5), rows.integer(row, 7),
+                   all.back().advance.iterations);
     }
     return true;
   });
