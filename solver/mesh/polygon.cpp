@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <string_view>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -10,7 +11,10 @@
 #include <CGAL/Delaunay_mesh_vertex_base_2.h>
 #include <CGAL/Delaunay_mesher_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
 
 #include "mesh/chains.hpp"
 #include "mesh/make_mesh.hpp"
@@ -123,18 +127,34 @@ class Criteria {
 
 using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
 
+/// The order in which points are inserted. Many go along a curve that fills the plane, in rounds of more and
+/// more (Amenta, Choi and Rote 2003): along a zigzag each would change as many triangles as there are.
+std::vector<std::size_t> order_of(const std::vector<Point>& points) {
+  constexpr std::size_t many = 1000;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (points.size() < many) return order;
+  std::vector<Kernel::Point_2> known;
+  for (const Point& x : points) known.emplace_back(x.x(), x.y());
+  using Known = CGAL::Pointer_property_map<Kernel::Point_2>::type;
+  CGAL::spatial_sort(order.begin(), order.end(),
+                     CGAL::Spatial_sort_traits_adapter_2<Kernel, Known>(CGAL::make_property_map(known)));
+  return order;
+}
+
 /// The vertices, numbered as the points of the rings, with the edges of the rings as constraints.
 /// Points in long rows take up to some tenths of a millisecond each.
 std::vector<Vertex> insert_rings(Triangulation& triangulation, const Rings& given, const Rings& unit,
                                  Progress* progress) {
-  std::vector<Vertex> vertices;
+  std::vector<Vertex> vertices(unit.points.size());
   Face near;
-  for (const Point& x : unit.points) {
-    if (progress) progress->check_in(static_cast<int>(vertices.size()));
-    const Vertex vertex = triangulation.insert({x.x(), x.y()}, near);
-    vertex->info().value = static_cast<int>(vertices.size());
-    near = vertex->face();
-    vertices.push_back(vertex);
+  int inserted = 0;
+  for (const std::size_t p : order_of(unit.points)) {
+    if (progress) progress->check_in(inserted++);
+    const Point& x = unit.points[p];
+    vertices[p] = triangulation.insert({x.x(), x.y()}, near);
+    vertices[p]->info().value = static_cast<int>(p);
+    near = vertices[p]->face();
   }
   for (int p = 0; p < static_cast<int>(vertices.size()); ++p) {
     if (progress) progress->check_in(p);

@@ -131,8 +131,10 @@ std::optional<Estimation::Coarser> Estimation::coarser_mesh(std::int64_t triangl
   return larger;
 }
 
-/// One of no more than `most` triangles, if there is such a one; to find that there is none takes as long.
+/// One of no more than `most` triangles, and no more than may be made, if there is such a one; to find that
+/// there is none takes as long.
 std::optional<Mesh> Estimation::make(const MeshRequest& request, std::int64_t most) {
+  most = std::min(most, may_be_made_);
   std::optional<Mesh> mesh = make_small_mesh(problem_.domain, request, most);
   may_be_made_ -= mesh ? static_cast<std::int64_t>(mesh->triangles.size()) : most;
   return mesh;
@@ -194,7 +196,7 @@ Counts Estimation::count() {
   const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
   const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
-  if (!has_formula && may_be_made_ > 0 && sizes.triangles <= most) mesh = make(problem_.mesh, most);
+  if (!has_formula && sizes.triangles <= std::min(most, may_be_made_)) mesh = make(problem_.mesh, most);
   if (mesh) sizes = sizes_of(*mesh);
   const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
   if (mesh) {

@@ -60,10 +60,10 @@ class Estimation {
   };
 
   /// Meshes of so many triangles are cut into pieces to see what their factor takes.
-  static constexpr std::int64_t most_cut = 4 * few_triangles;
+  static constexpr std::int64_t most_cut = 3 * few_triangles;
 
-  /// And so many are made if no mesh of few shows the shape: some twentieth of a second at most.
-  static constexpr std::int64_t most_of_own_shape = 2 * few_triangles;
+  /// And so many are made if no mesh of few shows the shape: some twentieth of a second at most, together.
+  static constexpr std::int64_t most_of_own_shape = 3 * few_triangles / 2;
 
   bool is_rectangle() const { return std::holds_alternative<Rectangle>(problem_.domain); }
   /// Of a part; null if it has another condition.
@@ -91,12 +91,12 @@ class Estimation {
   Problem problem_;
   const Factorization by_;
   const PredictedSizes* const predicted_;
-  std::vector<const Condition*> conditions_;  ///< of the parts
-  std::vector<int> chains_;                   ///< of the parts, at most: each has a node more than edges
-  int may_be_tried_ = 24;                     ///< coarser meshes
-  std::int64_t may_be_made_ = few_triangles;  ///< together, of meshes that are made to be counted
-  std::int64_t may_be_cut_ = 2 * most_cut;    ///< of those, and of their refinements
-  std::optional<MeshPieces> pieces_;          ///< of a mesh that is made, or given
+  std::vector<const Condition*> conditions_;      ///< of the parts
+  std::vector<int> chains_;                       ///< of the parts, at most: each has a node more than edges
+  int may_be_tried_ = 24;                         ///< coarser meshes
+  std::int64_t may_be_made_ = most_of_own_shape;  ///< together, of meshes that are made to be counted
+  std::int64_t may_be_cut_ = 2 * most_cut;        ///< of those, and of their refinements
+  std::optional<MeshPieces> pieces_;              ///< of a mesh that is made, or given
 };
 
 }  // namespace signorini

@@ -9,7 +9,7 @@ class Downloads : public ServiceTest {
  protected:
   /// The path of an ended solve.
   std::string solved(const std::string& title) {
-    return "/v1/solves/" + std::string(json::parse(post(title, "?wait=5&fields=summary")->body).at("id"));
+    return "/v1/solves/" + std::string(json::parse(post(title, "?wait=60&fields=summary")->body).at("id"));
   }
 };
 
@@ -135,7 +135,7 @@ TEST_F(Downloads, RefuseTheInvariantsForAMembrane) {
     const json problem = expect_problem(get(path + "/result?fields=" + member), 400);
     EXPECT_EQ(problem.at("errors").at(0).at("parameter"), "fields");
     EXPECT_NE(problem.at("detail").get<std::string>().find("a membrane has no"), std::string::npos);
-    expect_problem(post("instant", "?wait=5&fields=" + member), 400);
+    expect_problem(post("instant", "?wait=60&fields=" + member), 400);
   }
   EXPECT_EQ(json::parse(get("/v1/solves")->body).at("solves").size(), 1u) << "refused before it is queued";
 }

@@ -27,7 +27,7 @@ class DurableService : public testing::Test {
     options.vfs = FaultyDisk::vfs();
     service_ = std::make_unique<RunningService>(options);
     httplib::Client client("127.0.0.1", service_->port());
-    client.set_read_timeout(20);
+    client.set_read_timeout(100);
     return client;
   }
 
@@ -61,7 +61,7 @@ TEST_F(DurableService, ServesTheSameBytesAfterARestart) {
   {
     httplib::Client client = start();
     for (const char* title : {"elastic", "touches", "diverges", "no solution"}) {
-      const std::string id = json::parse(post(client, title, "?wait=5")->body).at("id");
+      const std::string id = json::parse(post(client, title, "?wait=60")->body).at("id");
       for (const char* suffix : {"", "/result", "/result?fields=stress", "/result.vtu", "/contact.csv",
                                  "/history", "/history.csv"}) {
         bodies["/v1/solves/" + id + suffix] = "";
@@ -87,7 +87,7 @@ TEST_F(DurableService, GoesOnAfterAStopWithWhatHadNotEnded) {
     wait_for(client, ids[1], "running");
     std::thread waiting([&] {
       httplib::Client other("127.0.0.1", service_->port());
-      other.set_read_timeout(20);
+      other.set_read_timeout(100);
       const auto reply = post(other, "instant", "?wait=15");
       ASSERT_TRUE(reply);
       EXPECT_EQ(reply->status, 202);
@@ -114,7 +114,7 @@ TEST_F(DurableService, AnswersARepeatedRequestWithTheSameSolve) {
   std::string id;
   {
     httplib::Client client = start();
-    const auto first = post(client, "instant", "?wait=5", key);
+    const auto first = post(client, "instant", "?wait=60", key);
     EXPECT_EQ(first->status, 200);
     id = json::parse(first->body).at("id");
   }
@@ -123,7 +123,7 @@ TEST_F(DurableService, AnswersARepeatedRequestWithTheSameSolve) {
   EXPECT_EQ(again->status, 202);
   EXPECT_EQ(again->get_header_value("Location"), "/v1/solves/" + id);
   EXPECT_EQ(json::parse(again->body).at("status"), "succeeded");
-  EXPECT_EQ(json::parse(post(client, "instant", "?wait=5", key)->body).at("id"), id);
+  EXPECT_EQ(json::parse(post(client, "instant", "?wait=60", key)->body).at("id"), id);
 
   const json refusal = expect_problem(post(client, "short", "", key), 422);
   EXPECT_NE(refusal.at("detail").get<std::string>().find("8e03978e"), std::string::npos);
@@ -153,7 +153,7 @@ TEST_F(DurableService, RefusesCleanlyWhileTheDiskIsFullAndRecovers) {
   FaultyDisk::fail(FaultyDisk::Fault::none);
   EXPECT_EQ(client.Get("/readyz")->status, 200);
   wait_for(client, running, "succeeded");
-  EXPECT_EQ(post(client, "instant", "?wait=5")->status, 200);
+  EXPECT_EQ(post(client, "instant", "?wait=60")->status, 200);
 }
 
 /// What a service that was killed in its first moments can leave.

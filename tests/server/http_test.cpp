@@ -92,7 +92,7 @@ TEST_F(Http, ABodyOverTheLimitIs413HoweverItIsSent) {
 TEST_F(Http, ABodyUpToTheLimitIsTakenHoweverItIsSent) {
   std::string padded = problem_titled("instant");
   padded.append((1 << 20) - padded.size(), ' ');
-  EXPECT_EQ(client_.Post("/v1/solves?wait=5", padded, "application/json")->status, 200);
+  EXPECT_EQ(client_.Post("/v1/solves?wait=60", padded, "application/json")->status, 200);
 
   const auto chunks = [&](std::size_t offset, httplib::DataSink& sink) {
     if (offset < padded.size())
@@ -100,11 +100,11 @@ TEST_F(Http, ABodyUpToTheLimitIsTakenHoweverItIsSent) {
     sink.done();
     return true;
   };
-  EXPECT_EQ(client_.Post("/v1/solves?wait=5", chunks, "application/json")->status, 200);
+  EXPECT_EQ(client_.Post("/v1/solves?wait=60", chunks, "application/json")->status, 200);
 
   httplib::Client compressing("127.0.0.1", service_.port());
   compressing.set_compress(true);
-  EXPECT_EQ(compressing.Post("/v1/solves?wait=5", padded, "application/json")->status, 200);
+  EXPECT_EQ(compressing.Post("/v1/solves?wait=60", padded, "application/json")->status, 200);
 }
 
 TEST_F(Http, ProblemsMayComeInCbor) {
@@ -113,7 +113,7 @@ TEST_F(Http, ProblemsMayComeInCbor) {
     return client_.Post(path, std::string(bytes.begin(), bytes.end()), "application/cbor");
   };
   json problem = json::parse(problem_titled("instant"));
-  const auto reply = post_cbor(problem, "/v1/solves?wait=5&fields=problem");
+  const auto reply = post_cbor(problem, "/v1/solves?wait=60&fields=problem");
   ASSERT_EQ(reply->status, 200);
   EXPECT_EQ(json::parse(reply->body).at("problem"), problem);
 
@@ -152,7 +152,7 @@ TEST_F(Http, StudiesAreSolvesThatMustHaveAStudy) {
   EXPECT_EQ(refusal.at("errors").at(0).at("pointer"), "/study");
   json problem = json::parse(problem_titled("instant"));
   problem["study"] = {{"divisions", {2, 4}}};
-  const auto reply = client_.Post("/v1/studies?wait=5&fields=study", problem.dump(), "application/json");
+  const auto reply = client_.Post("/v1/studies?wait=60&fields=study", problem.dump(), "application/json");
   ASSERT_EQ(reply->status, 200);
   const std::string path = reply->get_header_value("Location");
   EXPECT_EQ(path, "/v1/solves/" + json::parse(reply->body).at("id").get<std::string>());

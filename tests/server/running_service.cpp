@@ -85,7 +85,7 @@ ServiceTest::ServiceTest(const ServiceOptions& options)
     : service_(options), client_("127.0.0.1", service_.port()) {
   client_.set_keep_alive(true);
   client_.set_tcp_nodelay(true);
-  client_.set_read_timeout(20);
+  client_.set_read_timeout(100);
 }
 
 std::string ServiceTest::submit(const std::string& title) {

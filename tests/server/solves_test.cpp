@@ -48,7 +48,7 @@ TEST_F(Solves, ShowProgressAndHistoryWhileRunning) {
 }
 
 TEST_F(Solves, AnswerAWaitWithTheResult) {
-  const auto reply = post("short", "?wait=5&fields=summary");
+  const auto reply = post("short", "?wait=60&fields=summary");
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200) << reply->body;
   const json result = json::parse(reply->body);
@@ -76,7 +76,7 @@ TEST_F(Solves, HonourThePreferHeader) {
 }
 
 TEST_F(Solves, ServeTheLastIterateOfAMethodThatDiverged) {
-  const auto reply = post("diverges", "?wait=5");
+  const auto reply = post("diverges", "?wait=60");
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200);
   const json result = json::parse(reply->body);
@@ -90,20 +90,20 @@ TEST_F(Solves, ServeTheLastIterateOfAMethodThatDiverged) {
 }
 
 TEST_F(Solves, ThatFailSayWhy) {
-  const json no_solution = json::parse(post("no solution", "?wait=5")->body);
+  const json no_solution = json::parse(post("no solution", "?wait=60")->body);
   EXPECT_EQ(no_solution.at("status"), "failed");
   EXPECT_EQ(no_solution.at("error").at("detail"), "nothing holds the body");
 
-  const json not_finite = json::parse(post("not finite", "?wait=5")->body);
+  const json not_finite = json::parse(post("not finite", "?wait=60")->body);
   EXPECT_EQ(not_finite.at("error").at("errors").at(0).at("pointer"), "/load/body");
 
-  const json no_memory = json::parse(post("no memory", "?wait=5")->body);
+  const json no_memory = json::parse(post("no memory", "?wait=60")->body);
   EXPECT_EQ(no_memory.at("error").at("title"), "Out of memory");
   expect_problem(get("/v1/solves/" + std::string(no_memory.at("id")) + "/result"), 410);
 }
 
 TEST_F(Solves, NeverLeakAnException) {
-  const auto reply = post("throws", "?wait=5");
+  const auto reply = post("throws", "?wait=60");
   ASSERT_TRUE(reply);
   EXPECT_EQ(json::parse(reply->body).at("status"), "failed");
   EXPECT_EQ(reply->body.find("secret"), std::string::npos);
@@ -193,7 +193,7 @@ TEST_F(Solves, AreNotCancelledWhileTheirClientWaits) {
 }
 
 TEST_F(Solves, AreRemovedOnceEnded) {
-  const std::string id = json::parse(post("instant", "?wait=5")->body).at("id");
+  const std::string id = json::parse(post("instant", "?wait=60")->body).at("id");
   const auto reply = client_.Delete("/v1/solves/" + id);
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 204);
@@ -203,7 +203,7 @@ TEST_F(Solves, AreRemovedOnceEnded) {
 
 TEST_F(Solves, AreLeftByADeleteWhoseConditionDoesNotHold) {
   const std::string ended =
-      "/v1/solves/" + std::string(json::parse(post("instant", "?wait=5")->body).at("id"));
+      "/v1/solves/" + std::string(json::parse(post("instant", "?wait=60")->body).at("id"));
   const std::string id = submit("slow");
   const std::string running = "/v1/solves/" + id;
   wait_for(id, "running");
@@ -223,7 +223,8 @@ TEST_F(Solves, AreLeftByADeleteWhoseConditionDoesNotHold) {
 
 /// RFC 9110, 13.2.1: whatever is asked for, and done with it.
 TEST_F(Solves, AreAnsweredUnderTheConditionsOfTheRequest) {
-  const std::string own = "/v1/solves/" + std::string(json::parse(post("instant", "?wait=5")->body).at("id"));
+  const std::string own =
+      "/v1/solves/" + std::string(json::parse(post("instant", "?wait=60")->body).at("id"));
   const httplib::Headers other{{"If-Match", "\"x\""}}, missing{{"If-None-Match", "*"}},
       any{{"If-Match", "*"}}, none{{"If-None-Match", "\"x\""}};
   for (const std::string& path :
@@ -270,7 +271,7 @@ TEST_F(Solves, AreRefusedWhileStopping) {
 
 TEST_F(Solves, AreListedNewestFirstInPages) {
   std::vector<std::string> ids;
-  for (int i = 0; i < 5; ++i) ids.push_back(json::parse(post("instant", "?wait=5")->body).at("id"));
+  for (int i = 0; i < 5; ++i) ids.push_back(json::parse(post("instant", "?wait=60")->body).at("id"));
   std::vector<std::string> listed;
   for (json next = "/v1/solves?limit=2&status=succeeded"; next.is_string();) {
     const json page = json::parse(get(next)->body);
@@ -341,7 +342,7 @@ TEST_F(Solves, StreamALargeResultPlainAndCompressed) {
 }
 
 TEST_F(Solves, AnswerHttp10WithoutChunks) {
-  const std::string id = json::parse(post("instant", "?wait=5")->body).at("id");
+  const std::string id = json::parse(post("instant", "?wait=60")->body).at("id");
   const std::string reply = send_raw(service_.port(), "GET /v1/solves/" + id + "/result HTTP/1.0\r\n\r\n");
   EXPECT_EQ(reply.find("chunked"), std::string::npos);
   const std::size_t body = reply.find("\r\n\r\n");
