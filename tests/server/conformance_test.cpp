@@ -39,7 +39,7 @@ std::unique_ptr<RunningService> Conformance::service;
 
 /// What a connection says, until so many replies have come or it is closed.
 std::vector<Reply> replies_of(std::vector<RawClient>& client, std::size_t count, bool head) {
-  listen_until(client, 20s,
+  listen_until(client, 60s,
                [&] { return client[0].closed() || read_replies(client[0].heard(), head).size() >= count; });
   return read_replies(client[0].heard(), head);
 }

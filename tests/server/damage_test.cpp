@@ -1,6 +1,7 @@
 // Bytes on the disk that are no longer what was written: they harm the solve that they belong to, and no
 // other.
 
+#include "becomes.hpp"
 #include "running_service.hpp"
 
 #include <fstream>
@@ -44,7 +45,7 @@ class DamagedService : public testing::Test {
     options.workers = 1;
     service_ = std::make_unique<RunningService>(options);
     client_ = std::make_unique<httplib::Client>("127.0.0.1", service_->port());
-    client_->set_read_timeout(20);
+    client_->set_read_timeout(100);
     return *client_;
   }
 
@@ -54,11 +55,10 @@ class DamagedService : public testing::Test {
 
   json wait_for_end(const std::string& id) {
     json document;
-    for (int i = 0; i < 1000; ++i) {
+    EXPECT_TRUE(becomes([&] {
       document = json::parse(client_->Get("/v1/solves/" + id)->body);
-      if (document.at("status") != "queued" && document.at("status") != "running") break;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+      return document.at("status") != "queued" && document.at("status") != "running";
+    }));
     return document;
   }
 

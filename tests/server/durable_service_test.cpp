@@ -1,5 +1,6 @@
 // The service on disk, through HTTP.
 
+#include "becomes.hpp"
 #include "running_service.hpp"
 
 #include <fstream>
@@ -43,12 +44,11 @@ class DurableService : public testing::Test {
 
   static json wait_for(httplib::Client& client, const std::string& id, const std::string& status) {
     json document;
-    for (int i = 0; i < 500; ++i) {
+    EXPECT_TRUE(becomes([&] {
       document = json::parse(client.Get("/v1/solves/" + id)->body);
-      if (document.at("status") == status) return document;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ADD_FAILURE() << "not " << status << ": " << document;
+      return document.at("status") == status;
+    })) << "not "
+        << status << ": " << document;
     return document;
   }
 
@@ -94,9 +94,8 @@ TEST_F(DurableService, GoesOnAfterAStopWithWhatHadNotEnded) {
       EXPECT_EQ(json::parse(reply->body).at("status"), "queued");
       ids.push_back(json::parse(reply->body).at("id"));
     });
-    for (int i = 0; i < 500 && json::parse(client.Get("/v1/solves")->body).at("solves").size() < 4; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
+    EXPECT_TRUE(
+        becomes([&] { return json::parse(client.Get("/v1/solves")->body).at("solves").size() >= 4; }));
     service_->stop();
     waiting.join();
   }
@@ -228,9 +227,7 @@ TEST_F(LimitedFiles, AreAsAFullDisk) {
   }
   EXPECT_EQ(client_->Get("/healthz")->status, 200);
   delete_all();
-  for (int i = 0; i < 500 && readiness() != 200; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(readiness(), 200);
+  EXPECT_TRUE(becomes([&] { return readiness() == 200; }));
   EXPECT_EQ(post()->status, 200);
 }
 

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "becomes.hpp"
 #include "postgres_server.hpp"
 #include "server/jobs/memory_store.hpp"
 #include "server/jobs/postgres/store.hpp"
@@ -104,13 +105,11 @@ nlohmann::json ServiceTest::status_of(const std::string& id) {
 
 nlohmann::json ServiceTest::wait_for(const std::string& id, const std::string& status) {
   nlohmann::json document;
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (std::chrono::steady_clock::now() < patience) {
+  EXPECT_TRUE(becomes([&] {
     document = status_of(id);
-    if (document.at("status") == status) return document;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  ADD_FAILURE() << "not " << status << ": " << document.dump();
+    return document.at("status") == status;
+  })) << "not "
+      << status << ": " << document.dump();
   return document;
 }
 

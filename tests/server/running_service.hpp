@@ -77,7 +77,7 @@ class ServiceTest : public testing::Test {
   /// Posts and returns the id.
   std::string submit(const std::string& title);
   nlohmann::json status_of(const std::string& id);
-  /// Waits until the job has this status, or a minute, for machines are slow at times.
+  /// Waits until the job has this status, or a minute.
   nlohmann::json wait_for(const std::string& id, const std::string& status);
 
   RunningService service_;
