@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Geometry>
+#include <numeric>
 
 namespace signorini {
 namespace {
@@ -25,10 +24,10 @@ constexpr double kNearlyLeast = 1.02;
 /// The least part of the elements that a half has.
 constexpr double kLeastHalf = 0.3;
 
-Eigen::Vector2d extents(std::span<const Centre> piece) {
+Eigen::AlignedBox2d box_of(std::span<const Centre> piece) {
   Eigen::AlignedBox2d box;
   for (const Centre& centre : piece) box.extend(Point(centre.at[0], centre.at[1]));
-  return box.sizes();
+  return box;
 }
 
 auto before(int along) {
@@ -46,26 +45,6 @@ void divide(std::span<Centre> piece, std::size_t first_half, int along) {
 /// Between the centres on both sides of a cut, where they are sorted.
 double gap_before(std::span<const Centre> piece, std::size_t cut, int along) {
   return piece[cut].at[along] - piece[cut - 1].at[along];
-}
-
-/// Divides at the widest gap that is no farther from the median than a column of squares has elements, of
-/// several at the nearest. Of squares that is between two columns, whatever their diagonals: a cut through a
-/// column would be longer, and no piece with a ragged side is like another. Returns the size of the first
-/// half.
-std::size_t divide_between_columns(std::span<Centre> piece, int along, double extent) {
-  const std::size_t size = piece.size(), median = size / 2;
-  const auto column = static_cast<std::size_t>(std::sqrt(2. * static_cast<double>(size)));
-  const std::size_t reach = std::min(size / 6, column), first = median - reach, last = median + reach;
-  divide(piece, median, along);
-  if (reach == 0) return median;
-  divide(piece.first(median), first, along);
-  divide(piece.subspan(median), last - median, along);
-  std::sort(at(piece, first), at(piece, last) + 1, before(along));
-  std::size_t best = median;
-  for (std::size_t away = 1; away < reach; ++away)
-    for (const std::size_t cut : {median - away, median + away})
-      if (gap_before(piece, cut, along) > gap_before(piece, best, along) + kWider * extent) best = cut;
-  return best;
 }
 
 }  // namespace
@@ -97,9 +76,10 @@ ShortCut::ShortCut(const ElementSum& sum, int leaves)
       last_(sum.size) {}
 
 std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
-  const Eigen::Vector2d extent = extents(piece);
+  const Eigen::AlignedBox2d box = box_of(piece);
+  const Eigen::Vector2d extent = box.sizes();
   const int longer = extent.y() > kLonger * extent.x() ? 1 : 0;
-  const std::size_t middle = divide_between_columns(piece, longer, extent[longer]);
+  const std::size_t middle = divide_between_columns(piece, longer, box);
   if (piece.size() < kFew) return middle;
   const double size = static_cast<double>(piece.size()), most = elements_per_leaf_ * leaves;
   // Squares of two triangles, n / 2 in a square, have sqrt(n / 2) sides along the middle.
@@ -112,6 +92,62 @@ std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
   if (other.ratio < best.ratio) best = other;
   divide(piece, best.first_half, best.along);
   return best.first_half;
+}
+
+/// Divides at the widest gap that is no farther from the median than a column of squares has elements, of
+/// several at the nearest. Of squares that is between two columns, whatever their diagonals: a cut through a
+/// column would be longer, and no piece with a ragged side is like another. Returns the size of the first
+/// half.
+std::size_t ShortCut::divide_between_columns(std::span<Centre> piece, int along,
+                                             const Eigen::AlignedBox2d& box) {
+  const std::size_t size = piece.size(), median = size / 2;
+  const auto column = static_cast<std::size_t>(std::sqrt(2. * static_cast<double>(size)));
+  const std::size_t reach = std::min(size / 6, column);
+  if (reach == 0) {
+    divide(piece, median, along);
+    return median;
+  }
+  const double extent = box.sizes()[along];
+  sort_between(piece, median - reach, median + reach, along, {box.min()[along], extent});
+  std::size_t best = median;
+  for (std::size_t away = 1; away < reach; ++away)
+    for (const std::size_t cut : {median - away, median + away})
+      if (gap_before(piece, cut, along) > gap_before(piece, best, along) + kWider * extent) best = cut;
+  return best;
+}
+
+/// Sorts the elements from the first to the last of those places, between those that belong before and behind
+/// them. Many are put into bins first: a few streams through memory, without a guess at each comparison.
+void ShortCut::sort_between(std::span<Centre> piece, std::size_t first, std::size_t last, int along,
+                            const Range& range) {
+  constexpr std::size_t few = 512, bins = 1024;
+  const double per_length = bins / range.extent;
+  std::size_t begin = first, end = last + 1;
+  if (piece.size() < few || !std::isfinite(per_length)) {
+    divide(piece, first, along);
+    divide(piece.subspan(first), last - first, along);
+  } else {
+    const auto bin = [&](const Centre& centre) {
+      return std::min(bins - 1, static_cast<std::size_t>((centre.at[along] - range.low) * per_length));
+    };
+    std::array<std::size_t, bins + 1> ends{};  // behind the bin before
+    for (const Centre& centre : piece) ++ends[bin(centre) + 1];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    const auto of_place = [&](std::size_t place) {
+      return static_cast<std::size_t>(std::ranges::upper_bound(ends, place) - ends.begin()) - 1;
+    };
+    const std::size_t low = of_place(first), high = of_place(last);
+    begin = ends[low];
+    end = ends[high + 1];
+    binned_.resize(std::max(binned_.size(), piece.size()));
+    std::array<Centre*, 3> next{&binned_[0], &binned_[begin], &binned_[end - 1] + 1};
+    for (const Centre& centre : piece) {
+      const std::size_t own = bin(centre);
+      *next[(own >= low) + (own > high)]++ = centre;
+    }
+    std::copy_n(binned_.begin(), piece.size(), piece.begin());
+  }
+  std::sort(at(piece, begin), at(piece, end), before(along));
 }
 
 /// How many unknowns the halves share.
@@ -133,7 +169,7 @@ int ShortCut::shared(std::span<const Centre> piece, std::size_t first_half) {
 /// Of all cuts across an axis.
 ShortCut::Cut ShortCut::shortest(std::span<Centre> piece, std::size_t least, int along) {
   const std::size_t size = piece.size(), most = size - least;
-  const double rounding = kWider * extents(piece)[along];
+  const double rounding = kWider * box_of(piece).sizes()[along];
   divide(piece, least, along);
   divide(piece.subspan(least), most - least, along);
   std::sort(at(piece, least), at(piece, most), before(along));

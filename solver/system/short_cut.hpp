@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "system/element_sum.hpp"
 
 namespace signorini {
@@ -44,6 +46,14 @@ class ShortCut {
     double ratio;
   };
 
+  /// Of coordinates.
+  struct Range {
+    double low, extent;
+  };
+
+  std::size_t divide_between_columns(std::span<Centre> piece, int along, const Eigen::AlignedBox2d& box);
+  void sort_between(std::span<Centre> piece, std::size_t first, std::size_t last, int along,
+                    const Range& range);
   int shared(std::span<const Centre> piece, std::size_t first_half);
   Cut shortest(std::span<Centre> piece, std::size_t least_half, int along);
 
@@ -53,6 +63,7 @@ class ShortCut {
   int seen_ = 0;
   std::vector<int> seen_as_;       ///< of each unknown: what it was last seen as,
   std::vector<int> first_, last_;  ///< and the places of its elements in the piece that was last looked at
+  std::vector<Centre> binned_;     ///< what a piece is sorted in
 };
 
 }  // namespace signorini
