@@ -23,7 +23,7 @@ TraceSpace::TraceSpace(const Problem& problem, const Mesh& mesh, const Clearance
       per_edge_(spaces_of(problem.scheme, components_).traces_per_edge()),
       rotations_(spaces_of(problem.scheme, components_).rotations()),
       contact_(clearance.unknowns),
-      dofs_(mesh.edges.size() * per_edge_ + (rotations_ ? mesh.points.size() : 0), CouplingDof{0, 0, 1}),
+      dofs_(mesh.edges.size() * per_edge_ + (rotations_ ? mesh.points.size() : 0), CouplingDof{0, 1, 0}),
       turned_(mesh.edges.size(), -1) {
   number_triangles();
   for (const BoundaryPart& part : mesh.boundary) {
@@ -46,7 +46,7 @@ void TraceSpace::fix(const BoundaryPart& part, const VectorField& value) {
     for (int c = 0; c < components_; ++c) {
       const auto component = [&](const Point& x, const Vector& normal) { return value(c, x, normal); };
       const LocalVector datum = project_onto_edge(order_, moments_of(component, mesh_, edge, order_));
-      for (int j = 0; j <= order_; ++j) at(edge, j, c) = {-1, datum[j], 1};
+      for (int j = 0; j <= order_; ++j) at(edge, j, c) = {-1, 1, datum[j]};
     }
 }
 
@@ -58,7 +58,7 @@ void TraceSpace::roll(const BoundaryPart& part, const SupportMotion& motion) {
     for (int j = 0; j <= order_; ++j) {
       const Point x =
           order_ == 0 ? Point((mesh_.points[a] + mesh_.points[b]) / 2) : mesh_.points[j == 0 ? a : b];
-      at(edge, j, 0) = {-1, motion(x).dot(normal), 1};
+      at(edge, j, 0) = {-1, 1, motion(x).dot(normal)};
     }
   }
 }
@@ -72,13 +72,13 @@ void TraceSpace::reserve_contact(const ClearanceSpace& clearance) {
 }
 
 void TraceSpace::meet(const ClearanceSpace& clearance) {
-  const double sign = components_ == 1 ? 1 : -1;  // of λ in m: u_n = −u for the membrane
+  const int sign = components_ == 1 ? 1 : -1;  // of λ in m: u_n = −u for the membrane
   for (const ContactEdge& contact : clearance.edges)
     for (int j = 0; j <= order_; ++j) {
       const ClearanceRow& row = clearance.rows[contact.rows[j]];
       const bool held = row.unknown < 0;
-      at(contact.edge, j, 0) = {held ? -1 : free_ + row.unknown,
-                                sign * ((held ? row.datum : 0) - contact.gap[j]), sign};
+      at(contact.edge, j, 0) = {held ? -1 : free_ + row.unknown, sign,
+                                sign * ((held ? row.datum : 0) - contact.gap[j])};
     }
 }
 
@@ -125,22 +125,18 @@ Eigen::VectorXd TraceSpace::rotation(const Eigen::VectorXd& x) const {
 }
 
 LocalVector TraceSpace::values(int triangle, const Eigen::VectorXd& x) const {
-  LocalVector data(dofs_per_triangle());
-  for (int j = 0; j < data.size(); ++j) data[j] = dofs_[dof(triangle, j)].datum;
-  return in_xy(triangle, data + own_changes(triangle, x));
+  LocalVector values(dofs_per_triangle());
+  for (int j = 0; j < values.size(); ++j) {
+    const CouplingDof& own = dofs_[dof(triangle, j)];
+    values[j] = own.datum + own.part_of(x);
+  }
+  return in_xy(triangle, values);
 }
 
 LocalVector TraceSpace::changes(int triangle, const Eigen::VectorXd& dx) const {
-  return in_xy(triangle, own_changes(triangle, dx));
-}
-
-LocalVector TraceSpace::own_changes(int triangle, const Eigen::VectorXd& dx) const {
   LocalVector changes(dofs_per_triangle());
-  for (int j = 0; j < changes.size(); ++j) {
-    const CouplingDof& own = dofs_[dof(triangle, j)];
-    changes[j] = own.unknown < 0 ? 0 : own.sign * dx[own.unknown];
-  }
-  return changes;
+  for (int j = 0; j < changes.size(); ++j) changes[j] = dofs_[dof(triangle, j)].part_of(dx);
+  return in_xy(triangle, changes);
 }
 
 LocalVector TraceSpace::in_xy(int triangle, const LocalVector& own) const {

@@ -9,8 +9,11 @@ namespace signorini {
 /// One coefficient of the coupling: datum + sign · x[unknown].
 struct CouplingDof {
   int unknown = -1;  ///< -1 where it is data
+  int sign = 1;
   double datum = 0;
-  double sign = 1;
+
+  /// sign · x[unknown].
+  double part_of(const Eigen::VectorXd& x) const { return unknown < 0 ? 0 : sign * x[unknown]; }
 };
 
 /// Everything through which the triangles are coupled: the trace multiplier m of the displacement on every
@@ -73,7 +76,6 @@ class TraceSpace {
   void reserve_contact(const ClearanceSpace& clearance);
   void turn(int edge, const Vector& direction);
   /// The changes in the components that each edge carries.
-  LocalVector own_changes(int triangle, const Eigen::VectorXd& dx) const;
   LocalVector in_xy(int triangle, const LocalVector& own) const;
   int first_rotation() const { return static_cast<int>(mesh_.edges.size()) * per_edge_; }
   CouplingDof& at(int edge, int function, int component) {

@@ -11,22 +11,6 @@ LocalMatrix coupling_of(const ElementMatrices& element, const Spaces& spaces) {
   return coupling;
 }
 
-/// (L Lᵀ)⁻¹ b. Eigen cuts a triangular matrix into panels, which takes longer than the few products of one
-/// this small.
-LocalVector solve_small(const Eigen::LLT<LocalMatrix>& cholesky, LocalVector b) {
-  const LocalMatrix& l = cholesky.matrixLLT();
-  const Eigen::Index n = b.size();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    b[j] /= l(j, j);
-    for (Eigen::Index i = j + 1; i < n; ++i) b[i] -= l(i, j) * b[j];
-  }
-  for (Eigen::Index j = n - 1; j >= 0; --j) {
-    for (Eigen::Index i = j + 1; i < n; ++i) b[j] -= l(i, j) * b[i];
-    b[j] /= l(j, j);
-  }
-  return b;
-}
-
 /// The translation that has the mean of the traces, in the coefficients of the displacement; and its traces.
 struct Translation {
   Translation(const LocalVector& coupling, const Spaces& spaces)
@@ -45,30 +29,48 @@ struct Translation {
 
 }  // namespace
 
+SmallCholesky::SmallCholesky(const LocalMatrix& matrix)
+    : whole_(matrix), inverse_pivots_(whole_.matrixLLT().diagonal().cwiseInverse()) {}
+
+LocalVector SmallCholesky::solve(LocalVector b) const {
+  const LocalMatrix& l = whole_.matrixLLT();
+  const Eigen::Index n = b.size();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    b[j] *= inverse_pivots_[j];
+    for (Eigen::Index i = j + 1; i < n; ++i) b[i] -= l(i, j) * b[j];
+  }
+  for (Eigen::Index j = n - 1; j >= 0; --j) {
+    for (Eigen::Index i = j + 1; i < n; ++i) b[j] -= l(i, j) * b[i];
+    b[j] *= inverse_pivots_[j];
+  }
+  return b;
+}
+
 Elimination::Elimination(const ElementMatrices& element, const Spaces& spaces)
     : spaces_(spaces),
       coupling_(coupling_of(element, spaces)),
       compliance_matrix_(element.compliance),
       compliance_(element.compliance),
-      lifted_(compliance_.solve(spaces.divergence.transpose())),
+      lifted_(compliance_.whole().solve(spaces.divergence.transpose())),
       displacement_(LocalMatrix(spaces.divergence * lifted_)) {}
 
 LocalMatrix Elimination::stiffness() const {
   const LocalMatrix fluxes = coupling_ * lifted_;
-  const LocalMatrix flexible = coupling_ * LocalMatrix(compliance_.solve(LocalMatrix(coupling_.transpose())));
-  return flexible - fluxes * LocalMatrix(displacement_.solve(LocalMatrix(fluxes.transpose())));
+  const LocalMatrix flexible =
+      coupling_ * LocalMatrix(compliance_.whole().solve(LocalMatrix(coupling_.transpose())));
+  return flexible - fluxes * LocalMatrix(displacement_.whole().solve(LocalMatrix(fluxes.transpose())));
 }
 
 LocalMatrix Elimination::coupling_load() const {
   const LocalMatrix fluxes = coupling_ * lifted_;
-  return displacement_.solve(LocalMatrix(fluxes.transpose())).transpose();
+  return displacement_.whole().solve(LocalMatrix(fluxes.transpose())).transpose();
 }
 
 /// M σ + Bᵀ u = a, B σ = b.
 LocalFields Elimination::solve(const LocalVector& a, const LocalVector& b) const {
   LocalFields fields;
-  fields.displacement = solve_small(displacement_, lifted_.transpose().lazyProduct(a) - b);
-  fields.stress = solve_small(compliance_, a) - lifted_.lazyProduct(fields.displacement);
+  fields.displacement = displacement_.solve(lifted_.transpose().lazyProduct(a) - b);
+  fields.stress = compliance_.solve(a) - lifted_.lazyProduct(fields.displacement);
   return fields;
 }
 
@@ -99,14 +101,14 @@ LocalFields Elimination::respond(const LocalVector& coupling_change, const Local
 
 AugmentedElimination::AugmentedElimination(const ElementMatrices& element, const Spaces& spaces,
                                            double augmentation)
-    : b_(spaces.divergence), coupling_(coupling_of(element, spaces)) {
-  const LocalMatrix scaled = element.displacement_mass.llt().solve(b_);
-  compliance_.compute(element.compliance + augmentation * b_.transpose() * scaled);
-  lifted_ = compliance_.solve(b_.transpose());
-}
+    : b_(spaces.divergence),
+      coupling_(coupling_of(element, spaces)),
+      compliance_(element.compliance +
+                  augmentation * b_.transpose() * LocalMatrix(element.displacement_mass.llt().solve(b_))),
+      lifted_(compliance_.whole().solve(b_.transpose())) {}
 
 LocalMatrix AugmentedElimination::stiffness() const {
-  return coupling_ * LocalMatrix(compliance_.solve(LocalMatrix(coupling_.transpose())));
+  return coupling_ * LocalMatrix(compliance_.whole().solve(LocalMatrix(coupling_.transpose())));
 }
 
 LocalMatrix AugmentedElimination::coupling() const {
@@ -118,7 +120,7 @@ LocalMatrix AugmentedElimination::divergence() const {
 }
 
 LocalVector AugmentedElimination::stress(const LocalVector& coupling, const LocalVector& w) const {
-  return compliance_.solve(coupling_.transpose() * coupling) - lifted_ * w;
+  return compliance_.solve(coupling_.transpose().lazyProduct(coupling)) - lifted_.lazyProduct(w);
 }
 
 }  // namespace signorini

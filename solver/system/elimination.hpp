@@ -15,6 +15,21 @@ struct LocalFields {
   LocalVector force;
 };
 
+/// L Lᵀ of a matrix so small that Eigen's way, which cuts triangular matrices into panels, takes longer than
+/// the few products of a solve.
+class SmallCholesky {
+ public:
+  explicit SmallCholesky(const LocalMatrix& matrix);
+
+  LocalVector solve(LocalVector b) const;
+  /// For many right sides.
+  const Eigen::LLT<LocalMatrix>& whole() const { return whole_; }
+
+ private:
+  Eigen::LLT<LocalMatrix> whole_;
+  LocalVector inverse_pivots_;  ///< divisions take long, one after the other
+};
+
 /// Eliminates stress σ and displacement u of one triangle from its part of Problem 4.1 in hybrid form,
 ///
 ///     M σ + Bᵀ u = Gᵀ c,    B σ = −F,
@@ -42,11 +57,11 @@ class Elimination {
   LocalFields solve(const LocalVector& a, const LocalVector& b) const;
 
   const Spaces& spaces_;
-  LocalMatrix coupling_;                  ///< G
-  LocalMatrix compliance_matrix_;         ///< M
-  Eigen::LLT<LocalMatrix> compliance_;    ///< M
-  LocalMatrix lifted_;                    ///< M⁻¹ Bᵀ
-  Eigen::LLT<LocalMatrix> displacement_;  ///< W
+  LocalMatrix coupling_;           ///< G
+  LocalMatrix compliance_matrix_;  ///< M
+  SmallCholesky compliance_;       ///< M
+  LocalMatrix lifted_;             ///< M⁻¹ Bᵀ
+  SmallCholesky displacement_;     ///< W
 };
 
 /// The same with the displacement as data and the augmented compliance M_r = M + r Bᵀ V⁻¹ B (the form of
@@ -66,9 +81,9 @@ class AugmentedElimination {
 
  private:
   const LocalMatrix& b_;
-  LocalMatrix coupling_;                ///< G
-  Eigen::LLT<LocalMatrix> compliance_;  ///< M_r
-  LocalMatrix lifted_;                  ///< M_r⁻¹ Bᵀ
+  LocalMatrix coupling_;      ///< G
+  SmallCholesky compliance_;  ///< M_r
+  LocalMatrix lifted_;        ///< M_r⁻¹ Bᵀ
 };
 
 }  // namespace signorini

@@ -5,15 +5,29 @@
 namespace signorini {
 namespace {
 
+/// Points of the reference triangle, and a column for each: what its value counts at the three corners in the
+/// linear function nearest to the values at all.
+struct LinearFit {
+  std::vector<Point> points;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> weights;
+};
+
+/// A strain that is linear is known by the corners.
+LinearFit fit_of_strain(const Discretization& discrete) {
+  const bool is_linear = discrete.spaces().order == 0 && discrete.element.has_constant_material();
+  if (is_linear) return {{{0, 0}, {1, 0}, {0, 1}}, Eigen::Matrix3d::Identity()};
+  return {triangle_points(), corner_weights()};
+}
+
 template <int D>
 class RecoveredDisplacement {
  public:
   RecoveredDisplacement(const Discretization& discrete, const Solution& solution)
       : discrete_(discrete),
         solution_(solution),
-        stress_(discrete.spaces(), triangle_points()),
-        law_(discrete.problem.material),
-        weights_(corner_weights()) {}
+        fit_(fit_of_strain(discrete)),
+        stress_(discrete.spaces(), fit_.points),
+        law_(discrete.problem.material) {}
 
   /// Column z: the value at corner z.
   Eigen::Matrix<double, D, 3> at_corners(int t) {
@@ -41,15 +55,15 @@ class RecoveredDisplacement {
   }
 
   /// Of the triangle that was asked for last, as it resists most of what it may be strained by.
-  double stiffness() const { return TriangleRule::size / softness_; }
+  double stiffness() const { return static_cast<double>(fit_.points.size()) / softness_; }
 
  private:
   Eigen::Matrix<double, 2 * D, 3> gradient_at_corners(int t, const AffineMap& map) {
     Eigen::Matrix<double, 2 * D, 3> gradient = Eigen::Matrix<double, 2 * D, 3>::Zero();
     softness_ = 0;
-    for (int q = 0; q < TriangleRule::size; ++q) {
-      const TensorMap<D>& compliance = law_(map(triangle_rule().points[q])).compliance;
-      gradient += compliance * stress_(q, map, solution_.stress.col(t)) * weights_.col(q).transpose();
+    for (int q = 0; q < static_cast<int>(fit_.points.size()); ++q) {
+      const TensorMap<D>& compliance = law_(map(fit_.points[q])).compliance;
+      gradient += compliance * stress_(q, map, solution_.stress.col(t)) * fit_.weights.col(q).transpose();
       softness_ += compliance.trace();
     }
     if constexpr (D == 2)
@@ -70,9 +84,9 @@ class RecoveredDisplacement {
 
   const Discretization& discrete_;
   const Solution& solution_;
+  const LinearFit fit_;
   StressValues<D> stress_;
   LawField<D> law_;
-  CornerWeights weights_;
   double softness_ = 0;
 };
 
