@@ -98,7 +98,8 @@ class ElasticSums {
     const EdgeTractions& tractions;
   };
 
-  /// Of several pairs: `gap`, `strain` and `energy` alone. `norms`, those of the same law, must outlive this.
+  /// Of several pairs: `gap`, `strain`, `stress` and `energy` alone. `norms`, those of the same law, must
+  /// outlive this.
   ElasticSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms);
   ElasticSums(const Discretization& discrete, const Solution& solution, const AdmissibleDisplacement& v,
               const EdgeTractions& tractions, ShapeNorms& norms);

@@ -106,5 +106,29 @@ TEST(Rounding, OfABodyAtRestEndsToo) {
   EXPECT_LE(summary.quantities[0].upper - summary.quantities[0].lower, 1e-10);
 }
 
+/// Without a load nothing moves, and the energy is 0. Iterates whose stress goes down to nothing leave σ* as
+/// what rounding leaves of σ_h, which is 1e14 times as large.
+TEST(Rounding, OfAStressThatCancelsIsThatOfItsParts) {
+  for (const char* stiffness : {"1", "(x+0.5*y<0.437?1:1)", "(x+0.5*y<0.437?1:5)"})
+    for (const int divisions : {6, 9})
+      for (int iterations = 2; iterations < 7; ++iterations) {
+        Problem rest;
+        rest.domain = Rectangle{{0, 0}, {1, divisions == 6 ? 0.05 : 0.3}};
+        rest.mesh = {Divisions{divisions, 1}, Pattern::right};
+        rest.scheme = Scheme::conforming;
+        rest.material = MembraneStiffness::isotropic(problems::formula(stiffness));
+        rest.boundary = {
+            {"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Fixed{}}, {"top", Contact{Field(0.3)}}};
+        Settings settings;
+        settings.method = Mprgp{};
+        std::get<Mprgp>(settings.method).max_iterations = iterations;
+        const Solution solution = solve(rest, settings);
+        ASSERT_TRUE(solution.summary.error_bound);
+        if (!solution.summary.error_bound->guaranteed) continue;
+        EXPECT_LE(solution.summary.error_bound->energy_lower, 0) << stiffness << ' ' << iterations;
+        EXPECT_GE(solution.summary.error_bound->energy_upper, 0) << stiffness << ' ' << iterations;
+      }
+}
+
 }  // namespace
 }  // namespace signorini::rounding_test

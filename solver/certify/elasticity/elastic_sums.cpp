@@ -118,12 +118,12 @@ const ElasticSums::Found& ElasticSums::by_norms(int t, const JohnsonMercierNorms
   };
   const Eigen::Index stresses = norms.correction.cols(), of_scheme = norms.stress.cols();
   const Eigen::VectorXd gap = squares(norms.gap, z), strain = squares(norms.strain, z) / 2;
-  Eigen::VectorXd direct_gap, correction, skew, stress;
+  const Eigen::VectorXd stress = squares(norms.stress, z.middleRows(stresses - of_scheme, of_scheme));
+  Eigen::VectorXd direct_gap, correction, skew;
   if (needs_all_) {
     direct_gap = squares(norms.direct_gap, z);
     correction = squares(norms.correction, z.topRows(stresses));
     skew = squares(norms.skew, z.middleRows(stresses - of_scheme, of_scheme));
-    stress = squares(norms.stress, z.middleRows(stresses - of_scheme, of_scheme));
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     Found& found = place(alike[i]);
@@ -132,11 +132,11 @@ const ElasticSums::Found& ElasticSums::by_norms(int t, const JohnsonMercierNorms
     TriangleSums& sums = found.sums = {};
     sums.gap = gap[i];
     sums.strain = sums.energy = strain[i];
+    sums.stress = stress[i];
     if (!needs_all_) continue;
     sums.direct_gap = direct_gap[i];
     sums.correction = correction[i];
     sums.skew = skew[i];
-    sums.stress = stress[i];
   }
   return place(t);
 }

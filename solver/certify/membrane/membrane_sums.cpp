@@ -35,10 +35,12 @@ void TriangleSums::add_unknown_strain(double zeta) {
 
 /// Rounding changes the entries of C by a part of the largest, which is that times their contrast of the
 /// smallest; what it changes of a Jacobian J counts |J|²/det J times in what is mapped there and back.
-/// Gradients are differences of values, however much alike.
+/// Gradients are differences of values, however much alike; and σ* may be what little is left of σ_h, whose
+/// equilibrium is no better than its own digits.
 void TriangleSums::add_rounding(const AffineMap& map, const LawPiece& law, double largest_value) {
   const double stretch = map.jacobian.squaredNorm() / map.determinant;
-  double of_fields = stretch * stretch * (std::sqrt(2 * strain) + std::sqrt(gap)), of_gradients = 0;
+  double of_fields = stretch * stretch * (std::sqrt(2 * strain) + std::sqrt(gap) + std::sqrt(stress)),
+         of_gradients = 0;
   if (law.is_known()) {
     of_fields *= law.softest * law.stiffest;
     of_gradients = std::sqrt(law.stiffest * stretch) * largest_value;
