@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 
 #include "problems/elasticity.hpp"
@@ -95,6 +96,27 @@ TEST_P(Memory, OfManyPressuresThatVanish) {
                     {"bottom", Contact{problems::formula("0.1*sin(9*x+7*y)")}},
                     {"left", Traction{VectorField(problems::formula("2+sin(3*x)*cos(2*y)"), Field(1))}}};
   expect_bound(strip);
+}
+
+/// All triangles at one point: what is relaxed around it is no square of their number.
+TEST_P(Memory, OfAFan) {
+  const int count = long_tests() ? 6000 : 1500;
+  MeshData fan;
+  fan.points = {{0, 0}};
+  std::vector<std::array<int, 2>> rim;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count;
+    fan.points.push_back({std::cos(angle), std::sin(angle)});
+    rim.push_back({1 + i, 1 + (i + 1) % count});
+    fan.triangles.push_back({0, rim.back()[0], rim.back()[1]});
+  }
+  fan.boundary = {{"held", {rim.begin(), rim.begin() + 10}}, {"rim", {rim.begin() + 10, rim.end()}}};
+  for (Problem problem : {elastic(GetParam(), 1, 1), membrane(GetParam(), 1, 1)}) {
+    problem.mesh = {};
+    problem.domain = fan;
+    problem.boundary = {{"held", Fixed{}}};
+    expect_bound(problem);
+  }
 }
 
 TEST_P(Memory, OfOtherMeshesAndLaws) {

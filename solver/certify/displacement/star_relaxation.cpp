@@ -1,10 +1,14 @@
 #include "certify/displacement/star_relaxation.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include <boost/container_hash/hash.hpp>
 
 #include <Eigen/Cholesky>
 
 #include "mesh/triangles_at_points.hpp"
+#include "progress/pace.hpp"
 
 namespace signorini {
 namespace {
@@ -27,24 +31,45 @@ struct StarFactor {
 
 class Stars {
  public:
-  Stars(const Mesh& mesh, const TriangleForms& forms)
+  Stars(const Mesh& mesh, const TriangleForms& forms, Progress& progress)
       : mesh_(mesh),
         forms_(forms),
+        pace_(progress),
         triangles_(mesh),
         column_(forms.unknowns(mesh), -1),
         x_(Eigen::VectorXd::Zero(forms.unknowns(mesh))) {}
 
-  /// The unknowns around the point become the best.
+  /// The unknowns around the point become the best; where its triangles are many, those of the point with
+  /// those between so many of them, and then others between so many.
   void relax(int point) {
-    collect(point);
+    const std::span<const int> all = triangles_[point];
+    for (std::size_t first = 0; first < all.size(); first += kMost)
+      relax(point, all, first, std::min(kMost, all.size() - first));
+  }
+
+  Eigen::VectorXd take() { return std::move(x_); }
+
+ private:
+  /// Triangles whose edges from the point are relaxed at once: more take their square in memory.
+  static constexpr std::size_t kMost = 24;
+
+  void relax(int point, std::span<const int> all, std::size_t first, std::size_t count) {
+    own_.clear();
+    own_triangles_.clear();
+    if (first == 0) take(forms_.of_point(point), forms_.per_point);
+    for (const int t : all.subspan(first, count)) take_edges_from(point, t);
     if (own_.empty()) return;
     const auto size = static_cast<Eigen::Index>(own_.size());
+    pace_.add(own_.size() * own_.size());
+    if (first == 0) own_triangles_.assign(all.begin(), all.end());
+    std::ranges::sort(own_triangles_);
+    own_triangles_.erase(std::unique(own_triangles_.begin(), own_triangles_.end()), own_triangles_.end());
     places_.clear();
-    for (const int t : triangles_[point]) places_.push_back(place_of(t));
-    const Eigen::LLT<Eigen::MatrixXd>& factor = factor_of(triangles_[point]);
+    for (const int t : own_triangles_) places_.push_back(place_of(t));
+    const Eigen::LLT<Eigen::MatrixXd>& factor = factor_of(own_triangles_);
     if (factor.info() == Eigen::Success) {
       right_.setZero(size);
-      for (std::size_t i = 0; i < places_.size(); ++i) add_slope(triangles_[point][i], places_[i]);
+      for (std::size_t i = 0; i < places_.size(); ++i) add_slope(own_triangles_[i], places_[i]);
       factor.solveInPlace(right_);
       if (right_.allFinite())
         for (Eigen::Index i = 0; i < size; ++i) x_[own_[i]] += right_[i];
@@ -52,23 +77,23 @@ class Stars {
     for (const int unknown : own_) column_[unknown] = -1;
   }
 
-  Eigen::VectorXd take() { return std::move(x_); }
+  void take(int first, int count) {
+    for (int unknown = first; unknown < first + count; ++unknown)
+      if (!forms_.held[unknown] && column_[unknown] < 0) {
+        column_[unknown] = static_cast<int>(own_.size());
+        own_.push_back(unknown);
+      }
+  }
 
- private:
-  void collect(int point) {
-    own_.clear();
-    const auto take = [&](int first, int count) {
-      for (int unknown = first; unknown < first + count; ++unknown)
-        if (!forms_.held[unknown] && column_[unknown] < 0) {
-          column_[unknown] = static_cast<int>(own_.size());
-          own_.push_back(unknown);
-        }
-    };
-    take(forms_.of_point(point), forms_.per_point);
-    for (const int t : triangles_[point])
-      for (int e = 0; e < 3; ++e)
-        if (mesh_.triangles[t][e] != point)
-          take(forms_.of_edge(mesh_, mesh_.triangle_edges[t][e]), forms_.per_edge);
+  /// With the triangles on both sides.
+  void take_edges_from(int point, int t) {
+    for (int e = 0; e < 3; ++e) {
+      if (mesh_.triangles[t][e] == point) continue;
+      const int edge = mesh_.triangle_edges[t][e];
+      take(forms_.of_edge(mesh_, edge), forms_.per_edge);
+      for (const int side : mesh_.edge_triangles[edge])
+        if (side >= 0) own_triangles_.push_back(side);
+    }
   }
 
   Place place_of(int t) const {
@@ -90,7 +115,7 @@ class Stars {
     return i < of_points ? 1 : place.edge_signs[(i - of_points) / forms_.per_edge];
   }
 
-  const Eigen::LLT<Eigen::MatrixXd>& factor_of(std::span<const int> triangles) {
+  const Eigen::LLT<Eigen::MatrixXd>& factor_of(const std::vector<int>& triangles) {
     description_.clear();
     for (std::size_t i = 0; i < places_.size(); ++i) {
       description_.push_back(forms_.matrix_of[triangles[i]]);
@@ -128,10 +153,12 @@ class Stars {
 
   const Mesh& mesh_;
   const TriangleForms& forms_;
+  Pace pace_;
   const TrianglesAtPoints triangles_;
-  std::vector<int> column_;    ///< of each unknown in the star's matrix, or -1
-  std::vector<int> own_;       ///< the unknowns of the star
-  std::vector<Place> places_;  ///< of its triangles' functions
+  std::vector<int> column_;         ///< of each unknown in the star's matrix, or -1
+  std::vector<int> own_;            ///< the unknowns of the star, or of a part of it
+  std::vector<int> own_triangles_;  ///< those that know one of them
+  std::vector<Place> places_;       ///< of these triangles' functions
   std::vector<int> description_;
   std::array<StarFactor, 64> known_;
   Eigen::MatrixXd matrix_;
@@ -141,14 +168,10 @@ class Stars {
 }  // namespace
 
 Eigen::VectorXd relax_stars(const Mesh& mesh, const TriangleForms& forms, int sweeps, Progress& progress) {
-  Stars stars(mesh, forms);
+  Stars stars(mesh, forms, progress);
   const int points = static_cast<int>(mesh.points.size());
   for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (int i = 0; i < points; ++i) {
-      constexpr int often = 1000;
-      if (i % often == 0) progress.check();
-      stars.relax(sweep % 2 == 0 ? i : points - 1 - i);
-    }
+    for (int i = 0; i < points; ++i) stars.relax(sweep % 2 == 0 ? i : points - 1 - i);
   return stars.take();
 }
 
