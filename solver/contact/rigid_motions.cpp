@@ -1,5 +1,6 @@
 #include "contact/rigid_motions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -25,24 +26,46 @@ RigidFrame frame_of(const Discretization& discrete, const std::vector<int>& tria
   return {discrete.spaces().components, centre / area, std::sqrt(area)};
 }
 
+/// The triangles of a body, and its edges on the boundary that hold it.
+struct Body {
+  std::vector<int> triangles, fixed, rollers;
+  std::vector<const ContactEdge*> contact;
+};
+
+/// In one pass: there may be as many bodies as triangles, and as many parts.
+std::vector<Body> bodies_of(const Discretization& discrete) {
+  std::vector<Body> all;
+  std::vector<int> body_of(discrete.mesh.triangles.size());
+  for (std::vector<int>& triangles : bodies(discrete.mesh)) {
+    for (const int t : triangles) body_of[t] = static_cast<int>(all.size());
+    all.emplace_back().triangles = std::move(triangles);
+  }
+  const auto body_at = [&](int edge) -> Body& { return all[body_of[discrete.mesh.edge_triangles[edge][0]]]; };
+  for (const BoundaryPart& part : discrete.mesh.boundary) {
+    if (condition_on<Fixed>(discrete.problem, part.name))
+      for (const int edge : part.edges) body_at(edge).fixed.push_back(edge);
+    if (condition_on<Roller>(discrete.problem, part.name))
+      for (const int edge : part.edges) body_at(edge).rollers.push_back(edge);
+  }
+  for (const ContactEdge& contact : discrete.clearance.edges)
+    body_at(contact.edge).contact.push_back(&contact);
+  return all;
+}
+
 /// One body of the mesh with its rigid motions, its supports and its loads.
 class RigidBody {
  public:
-  RigidBody(const Discretization& discrete, std::vector<int> triangles)
-      : frame_(frame_of(discrete, triangles)),
+  RigidBody(const Discretization& discrete, Body body)
+      : frame_(frame_of(discrete, body.triangles)),
         discrete_(discrete),
-        triangles_(std::move(triangles)),
-        is_own_(discrete.mesh.triangles.size(), false),
-        components_(discrete.spaces().components) {
-    for (const int t : triangles_) is_own_[t] = true;
-  }
+        body_(std::move(body)),
+        components_(discrete.spaces().components) {}
 
   const RigidFrame& frame() const { return frame_; }
-  bool is_own(int boundary_edge) const { return is_own_[discrete_.mesh.edge_triangles[boundary_edge][0]]; }
 
   /// Names the body where there are others.
   std::string name() const {
-    if (triangles_.size() == discrete_.mesh.triangles.size()) return "the body";
+    if (body_.triangles.size() == discrete_.mesh.triangles.size()) return "the body";
     return "the body around " + pair(frame_.centre());
   }
 
@@ -61,31 +84,35 @@ class RigidBody {
     return "rotation about " + pair(frame_.centre() + Vector(-motion.y(), motion.x()) / rotation);
   }
 
-  /// Calls visit(normal, point) at both ends of each own edge of a part.
+  /// Calls visit(point) at both ends of each fixed edge.
   template <typename Visit>
-  void at_ends(const BoundaryPart& part, const Visit& visit) const {
-    for (const int edge : part.edges)
-      if (is_own(edge))
-        for (const int point : discrete_.mesh.edges[edge])
-          visit(discrete_.mesh.outward_normal(edge), discrete_.mesh.points[point]);
+  void where_fixed(const Visit& visit) const {
+    for (const int edge : body_.fixed)
+      for (const int point : discrete_.mesh.edges[edge]) visit(discrete_.mesh.points[point]);
+  }
+
+  /// Calls visit(normal, point) at both ends of each edge on rollers.
+  template <typename Visit>
+  void on_rollers(const Visit& visit) const {
+    for (const int edge : body_.rollers)
+      for (const int point : discrete_.mesh.edges[edge])
+        visit(discrete_.mesh.outward_normal(edge), discrete_.mesh.points[point]);
   }
 
   /// Calls visit(direction, point, gap) at both ends of each own edge of Γ_C.
   template <typename Visit>
   void at_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : discrete_.clearance.edges) {
-      if (!is_own(contact.edge)) continue;
+    for (const ContactEdge* contact : body_.contact)
       for (int end = 0; end < 2; ++end)
-        visit(contact.direction, discrete_.mesh.points[discrete_.mesh.edges[contact.edge][end]],
-              contact.gap[end * discrete_.spaces().order]);
-    }
+        visit(contact->direction, discrete_.mesh.points[discrete_.mesh.edges[contact->edge][end]],
+              contact->gap[end * discrete_.spaces().order]);
   }
 
   /// Calls visit(direction, point) in the middle of each own edge of Γ_C, where clearances of order 0 are.
   template <typename Visit>
   void in_middles_of_contact(const Visit& visit) const {
-    for (const ContactEdge& contact : discrete_.clearance.edges)
-      if (is_own(contact.edge)) visit(contact.direction, discrete_.clearance.rows[contact.rows[0]].point);
+    for (const ContactEdge* contact : body_.contact)
+      visit(contact->direction, discrete_.clearance.rows[contact->rows[0]].point);
   }
 
   /// The work of the loads on each of the three motions, and the sum of the sizes of its terms.
@@ -99,7 +126,7 @@ class RigidBody {
   Work work() const {
     Work work;
     const Mesh& mesh = discrete_.mesh;
-    for (const int t : triangles_) {
+    for (const int t : body_.triangles) {
       const LocalVector load = discrete_.load.col(t);
       const auto corners = mesh.corners(t);
       for (int i = 0; i < load.size(); ++i) {
@@ -138,20 +165,20 @@ class RigidBody {
   /// The third motion turns by 1 / size, and γ is minus the rotation.
   void add_couples(Work& work) const {
     if (!discrete_.spaces().leaves_couples()) return;
-    std::vector<bool> seen(discrete_.mesh.points.size(), false);
-    for (const int t : triangles_)
-      for (const int point : discrete_.mesh.triangles[t]) {
-        if (seen[point]) continue;
-        seen[point] = true;
-        const double couple = -discrete_.coupling_load[discrete_.traces.rotation_at(point)];
-        work.add(couple / frame_.size(), Eigen::RowVector3d::UnitZ());
-      }
+    std::vector<int> points;
+    for (const int t : body_.triangles)
+      points.insert(points.end(), discrete_.mesh.triangles[t].begin(), discrete_.mesh.triangles[t].end());
+    std::ranges::sort(points);
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    for (const int point : points) {
+      const double couple = -discrete_.coupling_load[discrete_.traces.rotation_at(point)];
+      work.add(couple / frame_.size(), Eigen::RowVector3d::UnitZ());
+    }
   }
 
   RigidFrame frame_;
   const Discretization& discrete_;
-  std::vector<int> triangles_;
-  std::vector<bool> is_own_;  ///< of each triangle of the mesh
+  Body body_;
   int components_;
 };
 
@@ -180,15 +207,11 @@ class Conditions {
 
 Motions left_free(const Discretization& discrete, const RigidBody& body) {
   Conditions conditions;
-  for (const BoundaryPart& part : discrete.mesh.boundary) {
-    if (condition_on<Fixed>(discrete.problem, part.name))
-      body.at_ends(part, [&](const Vector&, const Point& x) {
-        for (int c = 0; c < discrete.spaces().components; ++c) conditions.add(body.frame().component(c, x));
-      });
-    if (condition_on<Roller>(discrete.problem, part.name))
-      body.at_ends(
-          part, [&](const Vector& normal, const Point& x) { conditions.add(body.frame().along(normal, x)); });
-  }
+  body.where_fixed([&](const Point& x) {
+    for (int c = 0; c < discrete.spaces().components; ++c) conditions.add(body.frame().component(c, x));
+  });
+  body.on_rollers(
+      [&](const Vector& normal, const Point& x) { conditions.add(body.frame().along(normal, x)); });
   return conditions.fulfilled_by(body.all());
 }
 
@@ -317,8 +340,8 @@ bool held_by_contact_alone(const Discretization& discrete, const RigidBody& body
 
 bool held_by_contact_alone(const Discretization& discrete) {
   bool any = false;
-  for (std::vector<int>& triangles : bodies(discrete.mesh))
-    any = held_by_contact_alone(discrete, RigidBody(discrete, std::move(triangles))) || any;
+  for (Body& body : bodies_of(discrete))
+    any = held_by_contact_alone(discrete, RigidBody(discrete, std::move(body))) || any;
   return any;
 }
 

@@ -138,6 +138,7 @@ std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& req
   const auto* polygon = std::get_if<Polygon>(&domain);
   if (polygon && 2 * static_cast<std::int64_t>(Rings(*polygon).points.size()) > most) return std::nullopt;
   if (PredictedSizes(domain)(request).triangles > most) return std::nullopt;
+  if (const auto* data = std::get_if<MeshData>(&domain)) return import_sound_mesh(*data);
   try {
     return std::visit(Make{request, static_cast<int>(4 * most), nullptr}, domain);
   } catch (const TooManyTriangles&) {

@@ -43,7 +43,7 @@ class Import {
   Import(const MeshData& data, Progress* progress)
       : data_(data), progress_(progress), triangles_(data.triangles) {}
 
-  Mesh mesh() {
+  Mesh mesh(bool is_sound) {
     check_names();
     check_points();
     check_numbers();
@@ -58,7 +58,7 @@ class Import {
     const EdgeTable edges(triangles_);
     check_edges(edges);
     throw_if_any();
-    faults_ = faults_of_overlap(edges, data_.points, scaled_, progress_);
+    if (!is_sound) faults_ = faults_of_overlap(edges, data_.points, scaled_, progress_);
     throw_if_any();
     std::vector<Point> points = data_.points;
     std::vector<std::vector<std::array<int, 2>>> parts = edges_of_parts(edges);
@@ -277,7 +277,11 @@ class Import {
 }  // namespace
 
 Mesh import_mesh(const MeshData& data, Progress* progress) {
-  return Import(data, progress).mesh();
+  return Import(data, progress).mesh(false);
+}
+
+Mesh import_sound_mesh(const MeshData& data) {
+  return Import(data, nullptr).mesh(true);
 }
 
 }  // namespace signorini

@@ -19,4 +19,7 @@ class Progress;
 /// Progress throws, if there is one.
 Mesh import_mesh(const MeshData& data, Progress* progress = nullptr);
 
+/// The same of data in which nothing touches or overlaps; that is not looked for.
+Mesh import_sound_mesh(const MeshData& data);
+
 }  // namespace signorini

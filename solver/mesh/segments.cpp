@@ -1,6 +1,7 @@
 #include "mesh/segments.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "progress/progress.hpp"
@@ -59,16 +60,28 @@ std::vector<int> winding_numbers(const std::vector<Point>& points, const std::ve
   const auto high = [](const Segment& edge) { return std::max(edge[0].y(), edge[1].y()); };
   std::vector<Segment> rising = curves;
   std::ranges::sort(rising, {}, low);
-  // The ray of a point meets only edges at its height.
+  // The ray of a point meets only edges at its height. Those of many bodies in a row are all there, and
+  // looked at without a branch.
   std::vector<Segment> at_height;
+  double lowest_end = std::numeric_limits<double>::infinity();
   std::vector<int> turns(points.size());
   auto next = rising.begin();
   for (const int i : by_height) {
     if (progress) progress->check();
-    const double y = points[i].y();
-    for (; next != rising.end() && low(*next) < y; ++next) at_height.push_back(*next);
-    std::erase_if(at_height, [&](const Segment& edge) { return high(edge) < y; });
-    turns[i] = winding_number(points[i], at_height);
+    const Point& x = points[i];
+    for (; next != rising.end() && low(*next) < x.y(); ++next) {
+      at_height.push_back(*next);
+      lowest_end = std::min(lowest_end, high(*next));
+    }
+    if (lowest_end < x.y()) {
+      std::erase_if(at_height, [&](const Segment& edge) { return high(edge) < x.y(); });
+      lowest_end = std::numeric_limits<double>::infinity();
+      for (const Segment& edge : at_height) lowest_end = std::min(lowest_end, high(edge));
+    }
+    for (const auto& [from, to] : at_height) {
+      const double side = twice_area(from, to, x);
+      turns[i] += from.y() < x.y() ? (side > 0 ? 1 : 0) : (side < 0 ? -1 : 0);
+    }
   }
   return turns;
 }

@@ -332,6 +332,32 @@ TEST(Budget, AStudyWithLocalSizesIsCountedOrRefused) {
   EXPECT_EQ(found_soon(problem), "/study/sizes");
 }
 
+/// Triangles that touch no other, in a row or one above the other.
+json islands(int count, bool stacked, bool one_part) {
+  json mesh{{"type", "mesh"}, {"points", json::array()}, {"triangles", json::array()}};
+  for (int i = 0; i < count; ++i) {
+    const double x = stacked ? 0 : 2. * i, y = stacked ? 0.001 * i : 0, height = stacked ? 0.0004 : 1;
+    for (const auto& [dx, dy] : {std::pair(0., 0.), std::pair(1., height / 2), std::pair(0., height)})
+      mesh["points"].push_back({x + dx, y + dy});
+    mesh["triangles"].push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    for (int e = 0; e < 3; ++e)
+      mesh["boundary"][one_part ? "all of it" : "p" + std::to_string(3 * i + e)].push_back(
+          {3 * i + e, 3 * i + (e + 1) % 3});
+  }
+  return mesh;
+}
+
+TEST(Budget, ManyBodiesAreTriedInOnePass) {
+  for (const bool stacked : {false, true})
+    for (const bool one_part : {false, true})
+      for (const char* type : {"fixed", "contact"}) {
+        json problem = membrane_on(islands(1500, stacked, one_part), json::object());
+        problem["boundary"] = {{"all", {{"type", type}}}};
+        problem["load"] = {{"body", -1}};
+        EXPECT_NE(found_soon(problem), "malformed") << stacked << one_part << type;
+      }
+}
+
 TEST(Budget, AStudyCountsItsMeshesByOnePolygon) {
   json problem = polygon(ring(9990), {{"size", 0.1}});
   for (int i = 0; i < 64; ++i) problem["study"]["sizes"].push_back(0.03 + 0.001 * i);
