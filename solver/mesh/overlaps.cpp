@@ -26,6 +26,7 @@ class Boundary {
       const auto [from, to] = edge.directed();
       segments_.push_back({scaled[from], scaled[to]});
       turned_.push_back({turned(scaled[from]), turned(scaled[to])});
+      lengths_.push_back((scaled[to] - scaled[from]).norm());
     }
     double farthest = 0;
     for (const Point& x : scaled) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
@@ -33,9 +34,9 @@ class Boundary {
   }
 
   std::vector<Fault> faults(Progress* progress) {
-    find_contacts(progress);
+    const bool are_all_seen = find_contacts(progress);
     std::vector<Fault> all;
-    const bool simple = touching_.is_empty() && overlapping_.is_empty();
+    const bool simple = are_all_seen && touching_.is_empty() && overlapping_.is_empty();
     std::move(touching_).append_to(all);
     if (simple) find_covered_edges(progress);
     std::move(overlapping_).append_to(all);
@@ -46,9 +47,7 @@ class Boundary {
   static Point turned(const Point& x) { return {x.y(), -x.x()}; }
 
   /// Up to this distance a point counts as lying on the edge.
-  double tolerance(int edge) const {
-    return 1e-9 * (segments_[edge][1] - segments_[edge][0]).norm() + rounding_;
-  }
+  double tolerance(int edge) const { return 1e-9 * lengths_[edge] + rounding_; }
 
   std::string name(int edge) const {
     const auto& [a, b] = edges_[edge].points;
@@ -56,19 +55,33 @@ class Boundary {
            std::to_string(edges_[edge].triangle);
   }
 
-  void find_contacts(Progress* progress) {
+  /// Without a progress, among so many pairs at most, and false if there are more: slivers side by side, or
+  /// triangles around one point, all have boxes that meet, and the solve looks at them.
+  bool find_contacts(Progress* progress) {
+    constexpr int most_pairs = 300'000;
     std::vector<Box> boxes;
     for (int e = 0; e < static_cast<int>(segments_.size()); ++e)
       boxes.push_back(box_around(segments_[e], tolerance(e)));
     int pairs = 0;
     for_each_meeting_pair(boxes, [&](int i, int j) {
-      if (progress) progress->check_in(pairs++);
+      if (progress) progress->check_in(pairs);
+      if (++pairs == most_pairs && !progress) return false;
+      if (are_apart(i, j) || are_apart(j, i)) return true;
       const bool touch = touches(i, j) || touches(j, i);
       if (!touch && !share_a_point(i, j) && cross(segments_[i], segments_[j]))
         add_overlap(i, "overlaps triangle " + std::to_string(edges_[j].triangle) + ": the edges " + name(i) +
                            " and " + name(j) + " cross");
       return !touching_.is_full() && !overlapping_.is_full();
     });
+    return progress || pairs < most_pairs;
+  }
+
+  /// Whether both ends of the second edge lie clearly on one side of the first one's line.
+  bool are_apart(int first, int second) const {
+    const auto& [a, b] = segments_[first];
+    const double clearly = 2 * (tolerance(first) + tolerance(second)) * lengths_[first];
+    const double one = twice_area(a, b, segments_[second][0]), other = twice_area(a, b, segments_[second][1]);
+    return (one > clearly && other > clearly) || (one < -clearly && other < -clearly);
   }
 
   bool share_a_point(int i, int j) const {
@@ -152,7 +165,7 @@ class Boundary {
       int longest = first;
       for (int e = first; !seen[e];) {
         seen[e] = true;
-        if (length(e) > length(longest)) longest = e;
+        if (lengths_[e] > lengths_[longest]) longest = e;
         const int end = edges_[e].directed()[1];
         if (leaving[end] == 1) e = following[end];
       }
@@ -165,13 +178,12 @@ class Boundary {
     return chosen;
   }
 
-  double length(int edge) const { return (segments_[edge][1] - segments_[edge][0]).squaredNorm(); }
-
   const std::vector<Point>& given_;
   const std::vector<Point>& scaled_;
   double rounding_ = 0;
   std::vector<TriangleEdge> edges_;
   std::vector<Segment> segments_, turned_;  // along the boundary, the domain on the left
+  std::vector<double> lengths_;
   std::set<std::pair<int, int>> reported_;
   FaultList touching_{"/domain/points", "more hanging nodes or repeated points"};
   FaultList overlapping_{"/domain/triangles", "more overlaps"};

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "fem/clearance_space.hpp"
+#include "fem/stability.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
 #include "mesh/rings.hpp"
@@ -24,6 +25,35 @@ double longer_for(std::int64_t triangles, std::int64_t most) {
   double times = 1;
   while (static_cast<double>(triangles) > static_cast<double>(most) * times * times) times *= 2;
   return times;
+}
+
+/// By how many a part of a given mesh has more nodes than edges, at most: by one a chain, and where it turns
+/// by one more, if two edges do not share theirs there. At a point of more edges bodies meet, each with its
+/// own.
+int nodes_beyond_edges(const std::vector<Point>& points, const std::vector<std::array<int, 2>>& edges,
+                       bool turns) {
+  std::vector<std::pair<int, Vector>> ways;
+  for (const auto& [a, b] : edges) {
+    const int known = static_cast<int>(points.size());
+    if (std::min(a, b) < 0 || std::max(a, b) >= known) continue;  // which the import says
+    const Vector way = points[b] - points[a];
+    ways.emplace_back(a, way);
+    ways.emplace_back(b, way);
+  }
+  std::ranges::sort(ways, {}, &std::pair<int, Vector>::first);
+  std::ptrdiff_t nodes = 0;
+  for (auto own = ways.begin(); own != ways.end();) {
+    const auto next =
+        std::ranges::find_if(own, ways.end(), [&](const auto& way) { return way.first != own->first; });
+    const std::ptrdiff_t count = next - own;
+    const auto is_straight = [](const Vector& one, const Vector& other) {
+      return std::abs(one.x() * other.y() - one.y() * other.x()) <= 1e-12 * one.norm() * other.norm();
+    };
+    const bool is_one = count == 1 || (count == 2 && (!turns || is_straight(own->second, own[1].second)));
+    nodes += is_one ? 1 : turns ? count : (count + 1) / 2;
+    own = next;
+  }
+  return static_cast<int>(nodes - static_cast<std::ptrdiff_t>(edges.size()));
 }
 
 /// Of certifying with a law that varies, as measured: where it is smooth most triangles are one piece or few.
@@ -67,8 +97,12 @@ Estimation::Estimation(const Problem& problem, Factorization by, const Predicted
   }
   const auto* polygon = std::get_if<Polygon>(&problem_.domain);
   chains_.assign(conditions_.size(), polygon ? 0 : 1);
-  if (!polygon) return;
-  for (const int part : parts_of(*polygon).of_side) ++chains_[part];
+  if (polygon)
+    for (const int part : parts_of(*polygon).of_side) ++chains_[part];
+  if (const auto* data = std::get_if<MeshData>(&problem_.domain))
+    for (std::size_t part = 0; part < conditions_.size(); ++part)
+      if (condition<Contact>(part))
+        chains_[part] = nodes_beyond_edges(data->points, data->boundary[part].second, turns(part));
 }
 
 /// The pieces of a mesh; `edges_of(part)` has pairs of points.
@@ -168,11 +202,9 @@ std::int64_t Estimation::contact_unknowns_of_rectangle(const MeshSizes& sizes) c
 /// The edges whose middle becomes a node, or two where a curved boundary turns an elastic body's normal
 /// there.
 std::int64_t Estimation::nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const {
-  const auto* contact = condition<Contact>(part);
-  if (!contact) return 0;
+  if (!condition<Contact>(part)) return 0;
   const auto& [edges, chords] = sizes.parts[part];
-  const bool turns = components(problem_.material) == 2 && contact->direction.isZero(0);
-  return edges + (turns ? chords : 0);
+  return edges + (turns(part) ? chords : 0);
 }
 
 /// Those of a mesh before its refinements, nearly.
@@ -193,10 +225,13 @@ Counts Estimation::count() {
   const std::optional<Coarser> coarse =
       is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;
   // Few, or twice as many where no coarser one of few shows the shape.
-  const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
+  const bool is_given = std::holds_alternative<MeshData>(problem_.domain);
+  const std::int64_t most =
+      is_given || (is_large && !(coarse && coarse->has_few)) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
   const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
   if (!has_formula && sizes.triangles <= std::min(most, may_be_made_)) mesh = make(problem_.mesh, most);
+  if (mesh && problem_.mesh.refine == 0) mesh = stabilized(problem_, *std::move(mesh));
   if (mesh) sizes = sizes_of(*mesh);
   const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
   if (mesh) {
@@ -278,8 +313,15 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
   const double n = static_cast<double>(estimate.system),
                contact = static_cast<double>(counts.contact_unknowns);
   const double entries = n * std::log2(n + 2);
-  const SolveSizes sizes{static_cast<double>(estimate.triangles), n, contact, pieces_ ? &*pieces_ : nullptr,
-                         counts.across};
+  // Each triangle has three sides, and each edge inside is one of two triangles.
+  const auto boundary = static_cast<double>(2 * counts.edges - 3 * counts.triangles);
+  const SolveSizes sizes{static_cast<double>(estimate.triangles),
+                         n,
+                         contact,
+                         pieces_ ? &*pieces_ : nullptr,
+                         counts.across,
+                         boundary,
+                         static_cast<double>(conditions_.size())};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   if (!problem_.quantities.empty()) {

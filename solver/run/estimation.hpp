@@ -72,6 +72,11 @@ class Estimation {
     return std::get_if<Of>(conditions_[part]);
   }
 
+  /// Whether what is not to be penetrated follows the normal of a part, and jumps where that turns.
+  bool turns(std::size_t part) const {
+    return components(problem_.material) == 2 && condition<Contact>(part)->direction.isZero(0);
+  }
+
   Counts count();
   Counts counts_of(const MeshSizes& sizes, std::int64_t contact) const;
   Estimate estimate_of(const Counts& counts) const;

@@ -248,6 +248,14 @@ double memory_of_levels(const Spaces& spaces, double triangles) {
   return all * triangles * (kNumber * numbers + 3 * sizeof(int));
 }
 
+/// What an edge of the boundary takes more than one inside, with its points, where there are more of them
+/// than a strip of triangles has; and each part, for its conditions, names and what it supports. As measured
+/// of triangles that touch no other, and of parts of one edge.
+double on_boundary(const SolveSizes& sizes) {
+  constexpr double of_edge = 325, of_part = 2500;
+  return of_edge * std::max(0., sizes.boundary - sizes.triangles) + of_part * sizes.parts;
+}
+
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
@@ -273,18 +281,19 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
                                                     memory_of_levels(spaces, sizes.triangles)
                                               : 0;
-  return kSlack * (kept + std::max({factoring, certifying, enclosing}) + before);
+  return kSlack * (kept + on_boundary(sizes) + std::max({factoring, certifying, enclosing}) + before);
 }
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                             Factorization by) {
-  const SolveSizes free{sizes.triangles, sizes.system, 0, sizes.pieces, sizes.across};
+  SolveSizes free = sizes;
+  free.contact = 0;
   const FactorBytes made = factor_of(problem, spaces, free, by, true);
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);
   return kSlack * (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
-                   3 * kNumber * sizes.system +
+                   3 * kNumber * sizes.system + on_boundary(sizes) +
                    sizes.triangles *
                        (kMesh + discretization(problem.body, spaces) + element_sum(spaces, 1) + iteration));
 }

@@ -332,6 +332,15 @@ TEST(Budget, AStudyWithLocalSizesIsCountedOrRefused) {
   EXPECT_EQ(found_soon(problem), "/study/sizes");
 }
 
+/// Both long sides bend by a millionth at each vertex: triangles of each side's row are changed by the next.
+TEST(Budget, ManyVerticesInRowsAreMeshedInAnOrderOfTheirOwn) {
+  const int half = 2000;
+  json vertices;
+  for (int i = 0; i < half; ++i) vertices.push_back({i, 1 + 1e-6 * (i % 2)});
+  for (int i = half - 1; i >= 0; --i) vertices.push_back({i, 1e-6 * (i % 2)});
+  EXPECT_EQ(found_soon(polygon(vertices, {{"size", 1e5}})), "");
+}
+
 /// Triangles that touch no other, in a row or one above the other.
 json islands(int count, bool stacked, bool one_part) {
   json mesh{{"type", "mesh"}, {"points", json::array()}, {"triangles", json::array()}};
@@ -356,6 +365,33 @@ TEST(Budget, ManyBodiesAreTriedInOnePass) {
         problem["load"] = {{"body", -1}};
         EXPECT_NE(found_soon(problem), "malformed") << stacked << one_part << type;
       }
+}
+
+/// Of which the boxes of all edges meet.
+TEST(Budget, ManySliversAreLeftToTheSolve) {
+  for (const bool around_a_point : {false, true}) {
+    json mesh{{"type", "mesh"}, {"points", json::array()}, {"triangles", json::array()}};
+    const int count = 3900;
+    if (around_a_point) mesh["points"].push_back({0, 0});
+    for (int i = 0; i < count; ++i) {
+      const double x = 1e-3 * i, angle = 2 * std::numbers::pi * i / count, width = 0.3 / count;
+      const int next = static_cast<int>(mesh["points"].size());
+      if (around_a_point) {
+        for (const double at : {angle, angle + width}) mesh["points"].push_back({std::cos(at), std::sin(at)});
+        mesh["triangles"].push_back({0, next, next + 1});
+        for (const auto& edge : {std::pair(0, next), std::pair(next, next + 1), std::pair(next + 1, 0)})
+          mesh["boundary"]["rim"].push_back({edge.first, edge.second});
+      } else {
+        for (const auto& [dx, dy] : {std::pair(0., 0.), std::pair(3e-4, 0.), std::pair(10., 10.)})
+          mesh["points"].push_back({x + dx, dy});
+        mesh["triangles"].push_back({next, next + 1, next + 2});
+        for (int e = 0; e < 3; ++e) mesh["boundary"]["rim"].push_back({next + e, next + (e + 1) % 3});
+      }
+    }
+    json problem = membrane_on(mesh, json::object());
+    problem["boundary"] = {{"rim", {{"type", "fixed"}}}};
+    EXPECT_EQ(found_soon(problem), "");
+  }
 }
 
 TEST(Budget, AStudyCountsItsMeshesByOnePolygon) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "mesh/domain_mesh.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
 #include "problems/long_tests.hpp"
@@ -117,6 +118,41 @@ TEST_P(Memory, OfAFan) {
     problem.boundary = {{"held", Fixed{}}};
     expect_bound(problem);
   }
+}
+
+/// Triangles that touch no other, which are halved where they are bodies of their own on contact; some beyond
+/// the number of which the mesh is made to be foreseen.
+TEST_P(Memory, OfManyBodies) {
+  const auto islands = [](int count, bool own_parts) {
+    MeshData mesh;
+    std::vector<std::array<int, 2>> all;
+    for (int i = 0; i < count; ++i) {
+      for (const Point& corner : {Point(2 * i, 0), Point(2 * i + 1, 0), Point(2 * i, 1)})
+        mesh.points.push_back(corner);
+      mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+      for (int e = 0; e < 3; ++e) all.push_back({3 * i + e, 3 * i + (e + 1) % 3});
+    }
+    if (!own_parts) mesh.boundary = {{"all of it", all}};
+    for (std::size_t e = 0; own_parts && e < all.size(); ++e)
+      mesh.boundary.emplace_back("p" + std::to_string(e), std::vector{all[e]});
+    return mesh;
+  };
+  for (const auto& [count, own_parts] : {std::pair(150, false), std::pair(150, true), std::pair(9000, false)})
+    for (const Problem& posed : {elastic(GetParam(), 1, 1), membrane(GetParam(), 1, 1)})
+      for (const Condition& condition : {Condition(Fixed{}), Condition(Contact{Field(-0.001)})}) {
+        const bool is_fixed = std::holds_alternative<Fixed>(condition);
+        SCOPED_TRACE(std::to_string(count) + (own_parts ? " parts" : "") +
+                     (is_fixed ? " fixed" : " on contact"));
+        if (count > 1000 && !is_fixed) continue;
+        Problem problem = posed;
+        problem.mesh = {};
+        problem.domain = islands(count, own_parts);
+        problem.body =
+            components(problem.material) == 1 ? VectorField(Field(-1)) : VectorField(Field(-1), Field(-1));
+        problem.boundary = {};
+        for (const std::string& name : part_names(problem.domain)) problem.boundary[name] = condition;
+        expect_bound(problem);
+      }
 }
 
 TEST_P(Memory, OfOtherMeshesAndLaws) {
