@@ -64,7 +64,7 @@ void Lookout::look() {
                                               : Sought{id, mirror->second.attempt, mirror->second.known});
   }
   std::set<std::string> gone(ids.begin(), ids.end());
-  for (const Found& found : fleet_.look(sought)) {
+  for (Found& found : fleet_.look(sought)) {
     gone.erase(found.job);
     follow(found);
     if (has_ended(found.status)) ears_.ended(found.job);
@@ -72,15 +72,14 @@ void Lookout::look() {
   for (const std::string& id : gone) ears_.ended(id);
 }
 
-void Lookout::follow(const Found& found) {
+void Lookout::follow(Found& found) {
   if (!found.started) return;
   Mirror& mirror = mirrors_[found.job];
   const bool is_new = !mirror.live || mirror.attempt != found.attempt;
   if (is_new) mirror = {found.attempt, 0, std::make_shared<LiveSolve>(*found.started)};
-  Advance advance = found.advance;
-  if (has_ended(found.status)) advance.progress = mirror.live->progress();
-  mirror.live->follow(advance);
-  mirror.known += advance.iterations.size();
+  if (has_ended(found.status)) found.advance.progress = mirror.live->progress();
+  mirror.live->follow(found.advance);
+  mirror.known += found.advance.iterations.size();
   // Not before: a solve of this process that has just ended is told of as over by others, with what is there
   // then.
   if (is_new) ears_.begun(found.job, mirror.live);

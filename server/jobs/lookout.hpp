@@ -41,7 +41,7 @@ class Lookout {
  private:
   void listen(const std::stop_token& stop);
   void look();
-  void follow(const Found& found);
+  void follow(Found& found);
   void tell(const std::stop_token& stop);
   void pause(const std::stop_token& stop, std::chrono::milliseconds time);
 

@@ -34,12 +34,10 @@ struct Body {
 
 /// In one pass: there may be as many bodies as triangles, and as many parts.
 std::vector<Body> bodies_of(const Discretization& discrete) {
+  std::vector<std::vector<int>> triangles = bodies(discrete.mesh);
+  const std::vector<int> body_of = body_of_triangles(discrete.mesh, triangles);
   std::vector<Body> all;
-  std::vector<int> body_of(discrete.mesh.triangles.size());
-  for (std::vector<int>& triangles : bodies(discrete.mesh)) {
-    for (const int t : triangles) body_of[t] = static_cast<int>(all.size());
-    all.emplace_back().triangles = std::move(triangles);
-  }
+  for (std::vector<int>& own : triangles) all.emplace_back().triangles = std::move(own);
   const auto body_at = [&](int edge) -> Body& { return all[body_of[discrete.mesh.edge_triangles[edge][0]]]; };
   for (const BoundaryPart& part : discrete.mesh.boundary) {
     if (condition_on<Fixed>(discrete.problem, part.name))

@@ -29,9 +29,7 @@ std::vector<Vector> held_directions(const Condition& condition, const Vector& no
 /// The supports of each body.
 std::vector<Supports> supports_of(const Problem& problem, const Mesh& mesh,
                                   const std::vector<std::vector<int>>& bodies) {
-  std::vector<int> body_of(mesh.triangles.size());
-  for (std::size_t body = 0; body < bodies.size(); ++body)
-    for (const int t : bodies[body]) body_of[t] = static_cast<int>(body);
+  const std::vector<int> body_of = body_of_triangles(mesh, bodies);
   std::vector<Supports> supports(bodies.size());
   for (const BoundaryPart& part : mesh.boundary) {
     const auto condition = problem.boundary.find(part.name);

@@ -75,7 +75,7 @@ class TraceSpace {
   void roll(const BoundaryPart& part, const SupportMotion& motion);
   void reserve_contact(const ClearanceSpace& clearance);
   void turn(int edge, const Vector& direction);
-  /// The changes in the components that each edge carries.
+  /// Of numbers in the components that each edge carries.
   LocalVector in_xy(int triangle, const LocalVector& own) const;
   int first_rotation() const { return static_cast<int>(mesh_.edges.size()) * per_edge_; }
   CouplingDof& at(int edge, int function, int component) {

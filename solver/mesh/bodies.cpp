@@ -21,4 +21,11 @@ std::vector<std::vector<int>> bodies(const Mesh& mesh) {
   return all;
 }
 
+std::vector<int> body_of_triangles(const Mesh& mesh, const std::vector<std::vector<int>>& bodies) {
+  std::vector<int> body_of(mesh.triangles.size());
+  for (std::size_t body = 0; body < bodies.size(); ++body)
+    for (const int t : bodies[body]) body_of[t] = static_cast<int>(body);
+  return body_of;
+}
+
 }  // namespace signorini

@@ -14,7 +14,8 @@ class Progress;
 std::vector<std::string> part_names(const Domain& domain);
 
 /// Every fault of the domain and of the mesh it is asked for, with pointers below /domain and /mesh. What
-/// only the making of a mesh of more than `few_triangles` shows, make_domain_mesh() tells.
+/// only the making of a mesh of more than `few_triangles` shows, or more than few pairs of its edges,
+/// make_domain_mesh() tells.
 std::vector<Fault> validate(const Domain& domain, const MeshRequest& request);
 
 /// The same of the mesh alone, for a domain without a fault.

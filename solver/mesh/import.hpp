@@ -16,7 +16,7 @@ class Progress;
 /// the squared longest edge), repeated or overlap; edges of three triangles; hanging nodes; names that are
 /// empty, repeated or `all`; edges in a part that are not on the boundary, in two parts or in none.
 /// Points closer to each other or to an edge than 1e-9 of the edge's length count as touching. Throws what a
-/// Progress throws, if there is one.
+/// Progress throws; without one it leaves overlaps aside where the boxes of very many edges meet.
 Mesh import_mesh(const MeshData& data, Progress* progress = nullptr);
 
 /// The same of data in which nothing touches or overlaps; that is not looked for.

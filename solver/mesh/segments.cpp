@@ -42,11 +42,12 @@ bool cross(const Segment& a, const Segment& b) {
 int winding_number(const Point& x, const std::vector<Segment>& curves) {
   int turns = 0;
   // Counts the crossings with the ray from x to the right; an end at the height of x counts as above it.
+  // Without a branch, for of many bodies in a row all edges are looked at for each point.
   for (const auto& [from, to] : curves) {
-    const bool rises = from.y() < x.y() && to.y() >= x.y();
-    const bool falls = to.y() < x.y() && from.y() >= x.y();
-    if (rises && twice_area(from, to, x) > 0) ++turns;
-    if (falls && twice_area(from, to, x) < 0) --turns;
+    const bool begins_below = from.y() < x.y(), ends_below = to.y() < x.y();
+    const double side = twice_area(from, to, x);
+    turns += static_cast<int>(begins_below & !ends_below & (side > 0)) -
+             static_cast<int>(ends_below & !begins_below & (side < 0));
   }
   return turns;
 }
@@ -60,8 +61,7 @@ std::vector<int> winding_numbers(const std::vector<Point>& points, const std::ve
   const auto high = [](const Segment& edge) { return std::max(edge[0].y(), edge[1].y()); };
   std::vector<Segment> rising = curves;
   std::ranges::sort(rising, {}, low);
-  // The ray of a point meets only edges at its height. Those of many bodies in a row are all there, and
-  // looked at without a branch.
+  // The ray of a point meets only edges at its height.
   std::vector<Segment> at_height;
   double lowest_end = std::numeric_limits<double>::infinity();
   std::vector<int> turns(points.size());
@@ -78,10 +78,7 @@ std::vector<int> winding_numbers(const std::vector<Point>& points, const std::ve
       lowest_end = std::numeric_limits<double>::infinity();
       for (const Segment& edge : at_height) lowest_end = std::min(lowest_end, high(edge));
     }
-    for (const auto& [from, to] : at_height) {
-      const double side = twice_area(from, to, x);
-      turns[i] += from.y() < x.y() ? (side > 0 ? 1 : 0) : (side < 0 ? -1 : 0);
-    }
+    turns[i] = winding_number(x, at_height);
   }
   return turns;
 }

@@ -224,7 +224,8 @@ Counts Estimation::count() {
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
   const std::optional<Coarser> coarse =
       is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;
-  // Few, or twice as many where no coarser one of few shows the shape.
+  // Few, or half as many more where no coarser one of few shows the shape: nothing else tells that of a given
+  // mesh.
   const bool is_given = std::holds_alternative<MeshData>(problem_.domain);
   const std::int64_t most =
       is_given || (is_large && !(coarse && coarse->has_few)) ? most_of_own_shape : few_triangles;
