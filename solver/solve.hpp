@@ -60,8 +60,8 @@ Estimates estimate(const Problem& problem, const std::vector<Variation>& sweep,
 std::vector<Fault> validate(const Problem& problem, const Settings& settings);
 
 /// Refuses what solve() refuses before it factors: data that only the real mesh shows to be bad, those of the
-/// sweep too, and a body that cannot come to rest. Answers in sentences what it leaves to the solve: a mesh
-/// of more than `few_triangles`, and long formulas. The problem has no fault that validate() sees. Throws
+/// sweep too, and a body that cannot come to rest. Answers in sentences what it leaves to the solve: a large
+/// mesh (domain_mesh.hpp), and long formulas. The problem has no fault that validate() sees. Throws
 /// InvalidProblem and SolveError.
 std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Variation>& sweep = {});
 

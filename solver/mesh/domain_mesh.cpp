@@ -24,6 +24,12 @@ std::vector<Fault> validate(const Adaptive& goal) {
   return faults;
 }
 
+bool is_large(const MeshData& data) {
+  std::size_t count = data.triangles.size();
+  for (const auto& [name, edges] : data.boundary) count += edges.size();
+  return static_cast<std::int64_t>(count) > few_triangles;
+}
+
 struct Area {
   double operator()(const Rectangle& rectangle) const { return rectangle.size.prod(); }
   double operator()(const Polygon& polygon) const { return area(polygon); }
@@ -49,7 +55,7 @@ struct FaultsOfShape {
   std::vector<Fault> operator()(const Polygon& polygon) const { return validate(polygon); }
 
   std::vector<Fault> operator()(const MeshData& data) const {
-    if (static_cast<std::int64_t>(data.triangles.size()) > few_triangles) return {};
+    if (is_large(data)) return {};
     try {
       import_mesh(data);
     } catch (const InvalidProblem& invalid) {
@@ -110,6 +116,11 @@ std::vector<std::string> part_names(const Domain& domain) {
   return names;
 }
 
+bool brings_large_mesh(const Domain& domain) {
+  const auto* data = std::get_if<MeshData>(&domain);
+  return data && is_large(*data);
+}
+
 LargestEdge coarse_edge(const Domain& domain) {
   return {std::sqrt(std::visit(Area{}, domain)) / 4};
 }
@@ -134,9 +145,13 @@ Mesh make_domain_mesh(const Domain& domain, const MeshRequest& request, Progress
 }
 
 std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& request, std::int64_t most) {
-  // Two triangles are predicted for an edge of a polygon; of so many edges nothing else need be looked at.
-  const auto* polygon = std::get_if<Polygon>(&domain);
-  if (polygon && 2 * static_cast<std::int64_t>(Rings(*polygon).points.size()) > most) return std::nullopt;
+  // Two triangles are predicted for an edge of a polygon, and one at least for a chord between arcs that
+  // nearly touch; of so many edges nothing else need be looked at.
+  if (const auto* polygon = std::get_if<Polygon>(&domain)) {
+    const auto enough = static_cast<std::size_t>(most);
+    if (2 * Rings(*polygon).points.size() > enough) return std::nullopt;
+    if (followed_rings(*polygon, enough).points.size() > enough) return std::nullopt;
+  }
   if (PredictedSizes(domain)(request).triangles > most) return std::nullopt;
   if (const auto* data = std::get_if<MeshData>(&domain)) return import_sound_mesh(*data);
   try {
@@ -151,7 +166,7 @@ std::optional<Mesh> make_coarse_mesh(const Domain& domain) {
     return make_small_mesh(domain, {Divisions{4, 4}, Pattern::crossed});
   if (std::holds_alternative<Polygon>(domain))
     return make_small_mesh(domain, MeshRequest(coarse_edge(domain)));
-  return make_small_mesh(domain, {});
+  return brings_large_mesh(domain) ? std::nullopt : make_small_mesh(domain, {});
 }
 
 }  // namespace signorini

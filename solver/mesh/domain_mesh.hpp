@@ -14,8 +14,7 @@ class Progress;
 std::vector<std::string> part_names(const Domain& domain);
 
 /// Every fault of the domain and of the mesh it is asked for, with pointers below /domain and /mesh. What
-/// only the making of a mesh of more than `few_triangles` shows, or more than few pairs of its edges,
-/// make_domain_mesh() tells.
+/// only the making of a large mesh shows, or more than few pairs of its edges, make_domain_mesh() tells.
 std::vector<Fault> validate(const Domain& domain, const MeshRequest& request);
 
 /// The same of the mesh alone, for a domain without a fault.
@@ -24,6 +23,10 @@ std::vector<Fault> validate_request(const Domain& domain, const MeshRequest& req
 /// Meshes of so many triangles are made to answer a question about a problem: in some hundredths of a second,
 /// and a few megabytes.
 inline constexpr std::int64_t few_triangles = 4000;
+
+/// Whether the domain brings a mesh of more than `few_triangles`. The edges of its boundary count as well,
+/// for so do its bodies and parts, each of which is looked at by itself.
+bool brings_large_mesh(const Domain& domain);
 
 /// An edge length that shows the shape of a rectangle or polygon and little more.
 LargestEdge coarse_edge(const Domain& domain);

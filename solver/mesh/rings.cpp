@@ -151,8 +151,7 @@ double sagitta(const Rings& rings, int edge) {
 
 /// Halves chords in rounds as long as some collide with another edge, or lie so close to one that `closeness`
 /// times the distance from their arc is more.
-Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
-  constexpr std::size_t most_points = 15'000;
+Rings with_chords_halved(Rings rings, double closeness, int most_rounds, std::size_t most_points) {
   // Arcs among so many edges that are near each other are not looked at more closely: they cross, or the
   // polygon is refused for them.
   std::size_t may_be_tried = 500'000;
@@ -192,11 +191,11 @@ Rings with_chords_halved(Rings rings, double closeness, int most_rounds) {
 
 Rings resolved_rings(const Polygon& polygon, double longest_chord) {
   // Each round brings a chord four times closer to its arc.
-  return with_chords_halved(Rings(polygon, longest_chord), 0, 8);
+  return with_chords_halved(Rings(polygon, longest_chord), 0, 8, 15'000);
 }
 
-Rings followed_rings(const Polygon& polygon) {
-  return with_chords_halved(Rings(polygon), 2, 24);
+Rings followed_rings(const Polygon& polygon, std::size_t most_points) {
+  return with_chords_halved(Rings(polygon), 2, 24, most_points);
 }
 
 }  // namespace signorini

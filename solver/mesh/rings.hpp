@@ -70,8 +70,9 @@ double domain_area(const Rings& rings);
 Rings resolved_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity());
 
 /// The same with so many that the domain is about as narrow between them as between the arcs: none is farther
-/// from its arc than half of its distance from the nearest other edge.
-Rings followed_rings(const Polygon& polygon);
+/// from its arc than half of its distance from the nearest other edge. With about `most_points` they are as
+/// they are.
+Rings followed_rings(const Polygon& polygon, std::size_t most_points = 15'000);
 
 /// Edges of the rings, given in their frame, that have more in common than an end.
 std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most);

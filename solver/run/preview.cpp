@@ -57,12 +57,12 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
   const auto count = [&](const MeshSizes& sizes) { return refined(sizes, start.refine).triangles; };
   if (problem.mesh.adaptive && !is_polygon)
     require_room(*problem.mesh.adaptive, count(PredictedSizes(problem.domain)(start)));
-  const std::optional<Mesh> small = make_small_mesh(problem.domain, start);
+  const std::optional<Mesh> small =
+      brings_large_mesh(problem.domain) ? std::nullopt : make_small_mesh(problem.domain, start);
   if (!small || count(sizes_of(*small)) > few_triangles)
     return {"the mesh has more than " + std::to_string(few_triangles) +
-            " triangles: whether formulas have sound values on it, and whether the body can come to rest, "
-            "the solve "
-            "will tell"};
+            " triangles, or with the edges of its boundary: whether formulas have sound values on it, and "
+            "whether the body can come to rest, the solve will tell"};
   const Mesh mesh = stabilized(problem, refine(*small, start.refine));
   if (problem.mesh.adaptive)
     require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));
