@@ -15,8 +15,9 @@ namespace {
 /// mend.
 constexpr int kMostLooks = 4;
 
-/// What is rounding, and so many iterations in a row do not halve, does not fall any more.
-constexpr int kMostStalls = 4;
+/// What is rounding, and so many iterations in a row do not halve, does not fall any more. Conjugate
+/// gradients rest for a few now and then.
+constexpr int kMostStalls = 8;
 
 /// D^(-1/2) S D^(-1/2), D the diagonal of S, as Spectra asks for its products.
 class ScaledComplement {

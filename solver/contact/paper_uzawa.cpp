@@ -80,8 +80,7 @@ bool UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stif
     all = all && traces.is_free(dof);
     matrix.unknowns.push_back(traces.is_free(dof) ? traces[dof].unknown : -1);
   }
-  matrix.matrix_of.push_back(t);
-  matrix.matrices.insert(matrix.matrices.end(), turned.data(), turned.data() + turned.size());
+  matrix.matrix_of.push_back(matrix.keep(turned.data()));
   matrix.centres.push_back(discrete_.mesh.centroid(t));
   return all;
 }

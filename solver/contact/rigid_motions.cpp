@@ -35,7 +35,7 @@ struct Body {
 /// In one pass: there may be as many bodies as triangles, and as many parts.
 std::vector<Body> bodies_of(const Discretization& discrete) {
   std::vector<std::vector<int>> triangles = bodies(discrete.mesh);
-  const std::vector<int> body_of = body_of_triangles(discrete.mesh, triangles);
+  const std::vector<int> body_of = body_of_triangles(triangles, discrete.mesh.triangles.size());
   std::vector<Body> all;
   for (std::vector<int>& own : triangles) all.emplace_back().triangles = std::move(own);
   const auto body_at = [&](int edge) -> Body& { return all[body_of[discrete.mesh.edge_triangles[edge][0]]]; };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
+#include "mesh/mesh_sizes.hpp"
 #include "problem/problem.hpp"
 
 namespace signorini {
@@ -27,5 +28,9 @@ class Progress;
 ///
 /// Throws what a Progress throws, if there is one.
 Mesh stabilized(const Problem& problem, Mesh mesh, Progress* progress = nullptr);
+
+/// The sizes of that mesh, nearly, of a given one with these sizes that nobody has made. Its triangles are of
+/// points that exist.
+MeshSizes stabilized(const Problem& problem, const MeshData& data, MeshSizes sizes);
 
 }  // namespace signorini

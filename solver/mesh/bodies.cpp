@@ -1,28 +1,53 @@
 #include "mesh/bodies.hpp"
 
-namespace signorini {
+#include <algorithm>
 
-std::vector<std::vector<int>> bodies(const Mesh& mesh) {
+#include "mesh/edge_table.hpp"
+
+namespace signorini {
+namespace {
+
+/// `for_each_neighbour(triangle, visit)`
+template <typename ForEachNeighbour>
+std::vector<std::vector<int>> joined(std::size_t triangles, const ForEachNeighbour& for_each_neighbour) {
   std::vector<std::vector<int>> all;
-  std::vector<bool> met(mesh.triangles.size(), false);
-  for (int first = 0; first < static_cast<int>(mesh.triangles.size()); ++first) {
+  std::vector<bool> met(triangles, false);
+  for (int first = 0; first < static_cast<int>(triangles); ++first) {
     if (met[first]) continue;
     met[first] = true;
     std::vector<int> body{first};
     for (std::size_t next = 0; next < body.size(); ++next)
-      for (const int edge : mesh.triangle_edges[body[next]])
-        for (const int neighbour : mesh.edge_triangles[edge]) {
-          if (neighbour < 0 || met[neighbour]) continue;
-          met[neighbour] = true;
-          body.push_back(neighbour);
-        }
+      for_each_neighbour(body[next], [&](int neighbour) {
+        if (neighbour < 0 || met[neighbour]) return;
+        met[neighbour] = true;
+        body.push_back(neighbour);
+      });
     all.push_back(std::move(body));
   }
   return all;
 }
 
-std::vector<int> body_of_triangles(const Mesh& mesh, const std::vector<std::vector<int>>& bodies) {
-  std::vector<int> body_of(mesh.triangles.size());
+}  // namespace
+
+std::vector<std::vector<int>> bodies(const Mesh& mesh) {
+  return joined(mesh.triangles.size(), [&](int triangle, const auto& visit) {
+    for (const int edge : mesh.triangle_edges[triangle])
+      std::ranges::for_each(mesh.edge_triangles[edge], visit);
+  });
+}
+
+std::vector<std::vector<int>> bodies(const std::vector<std::array<int, 3>>& triangles,
+                                     const EdgeTable& edges) {
+  return joined(triangles.size(), [&](int triangle, const auto& visit) {
+    for (int i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(triangles[triangle][i], triangles[triangle][(i + 1) % 3]);
+      for (const TriangleEdge& side : edges.between({a, b})) visit(side.triangle);
+    }
+  });
+}
+
+std::vector<int> body_of_triangles(const std::vector<std::vector<int>>& bodies, std::size_t triangles) {
+  std::vector<int> body_of(triangles);
   for (std::size_t body = 0; body < bodies.size(); ++body)
     for (const int t : bodies[body]) body_of[t] = static_cast<int>(body);
   return body_of;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "mesh/chains.hpp"
+#include "mesh/corner_order.hpp"
 #include "mesh/edge_table.hpp"
 #include "mesh/fault_list.hpp"
 #include "mesh/make_mesh.hpp"
@@ -160,11 +161,11 @@ class Import {
     std::move(unused).append_to(faults_);
   }
 
-  /// Turns the triangles counter-clockwise.
+  /// Turns the triangles counter-clockwise, and so that those of one shape are alike.
   void check_shapes() {
     FaultList flat("/domain/triangles", "more degenerate triangles");
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      auto& [a, b, c] = triangles_[t];
+      const auto [a, b, c] = triangles_[t];
       const double twice = twice_area(scaled_[a], scaled_[b], scaled_[c]);
       const double longest =
           std::max({(scaled_[b] - scaled_[a]).squaredNorm(), (scaled_[c] - scaled_[b]).squaredNorm(),
@@ -172,7 +173,7 @@ class Import {
       if (std::abs(twice) <= 2 * degenerate * longest)
         flat.add(pointer("/domain/triangles", t), "is degenerate: the points " + joined(data_.triangles[t]) +
                                                       " lie on a line near " + to_string(data_.points[a]));
-      if (twice < 0) std::swap(b, c);
+      triangles_[t] = in_order(triangles_[t], scaled_);
     }
     std::move(flat).append_to(faults_);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "mesh/clusters.hpp"
 #include "mesh/domain_mesh.hpp"
@@ -43,14 +44,11 @@ MeshSizes sizes_of(const Rectangle& rectangle, const MeshRequest& request) {
 /// A mesh of whose boundary every edge is in a part.
 MeshSizes sizes_of(const MeshData& data) {
   MeshSizes sizes;
-  std::int64_t boundary = 0;
-  for (const auto& [name, edges] : data.boundary) {
+  for (const auto& [name, edges] : data.boundary)
     sizes.parts.push_back({static_cast<std::int64_t>(edges.size()), 0});
-    boundary += sizes.parts.back().edges;
-  }
   sizes.triangles = static_cast<std::int64_t>(data.triangles.size());
   sizes.points = static_cast<std::int64_t>(data.points.size());
-  sizes.edges = (3 * sizes.triangles + boundary) / 2;
+  sizes.edges = (3 * sizes.triangles + sizes.edges_of_parts()) / 2;
   return sizes;
 }
 
@@ -125,6 +123,11 @@ std::int64_t counted(double number) {
 }
 
 }  // namespace
+
+std::int64_t MeshSizes::edges_of_parts() const {
+  return std::transform_reduce(parts.begin(), parts.end(), std::int64_t{0}, std::plus{},
+                               [](const Part& part) { return part.edges; });
+}
 
 MeshSizes sizes_of(const Mesh& mesh) {
   MeshSizes sizes{static_cast<std::int64_t>(mesh.triangles.size()),

@@ -19,6 +19,9 @@ struct MeshSizes {
   std::int64_t triangles = 0, edges = 0, points = 0;
   std::vector<Part> parts;  ///< in the order of part_names()
   double across = 0;  ///< the share of triangles that reach across the domain, of a mesh that is not there
+
+  /// Of all parts: of a mesh that is given, of its boundary.
+  std::int64_t edges_of_parts() const;
 };
 
 MeshSizes sizes_of(const Mesh& mesh);

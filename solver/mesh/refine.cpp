@@ -1,5 +1,6 @@
 #include "mesh/refine.hpp"
 
+#include "mesh/corner_order.hpp"
 #include "mesh/make_mesh.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/upright.hpp"
@@ -18,7 +19,8 @@ Mesh refine_once(const Mesh& mesh, Progress* progress) {
     const auto& [a, b, c] = mesh.triangles[t];
     const auto& edges = mesh.triangle_edges[t];
     const int bc = number + edges[0], ca = number + edges[1], ab = number + edges[2];
-    triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    for (const std::array<int, 3>& part : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+      triangles.push_back(in_order(part, points));
   }
 
   std::vector<BoundarySegment> segments;

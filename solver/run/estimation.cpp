@@ -114,9 +114,8 @@ void Estimation::cut(const std::vector<Point>& points, const std::vector<std::ar
   std::vector<std::pair<const Condition*, const MeshPieces::Edges*>> boundary;
   for (std::size_t part = 0; part < conditions_.size(); ++part)
     boundary.emplace_back(conditions_[part], &edges[part]);
-  pieces_.emplace(points, triangles, boundary, components(problem_.material),
-                  shows == Shows::itself && by_ == Factorization::multifrontal &&
-                      is_constant(problem_.material) && !problem_.mesh.adaptive);
+  are_alike_ = shows == Shows::itself && is_constant(problem_.material) && !problem_.mesh.adaptive;
+  pieces_.emplace(points, triangles, boundary, components(problem_.material), are_alike_);
 }
 
 void Estimation::cut(const Mesh& mesh, Shows shows) {
@@ -135,14 +134,13 @@ void Estimation::cut_finer(Mesh mesh, std::int64_t triangles, Shows shows) {
   const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
   while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) mesh = refine(mesh, 1);
   may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
-  const bool is_all = static_cast<std::int64_t>(mesh.triangles.size()) == triangles;
-  cut(mesh, is_all ? shows : Shows::another);
+  cut(mesh, shows);
 }
 
 void Estimation::cut(const MeshData& data) {
   cut(
       data.points, data.triangles, [&](std::size_t part) { return data.boundary[part].second; },
-      problem_.mesh.refine == 0 ? Shows::itself : Shows::another);
+      Shows::itself);
 }
 
 /// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
@@ -172,6 +170,16 @@ std::optional<Mesh> Estimation::make(const MeshRequest& request, std::int64_t mo
   std::optional<Mesh> mesh = make_small_mesh(problem_.domain, request, most);
   may_be_made_ -= mesh ? static_cast<std::int64_t>(mesh->triangles.size()) : most;
   return mesh;
+}
+
+/// What becomes of a given mesh that is not made, if it has many bodies of a few triangles, which the solve
+/// halves.
+MeshSizes Estimation::with_small_bodies(const MeshData& data, const MeshSizes& sizes) {
+  constexpr std::int64_t of_large_bodies = 8;  // triangles or more, for an edge of the boundary
+  if (sizes.triangles > of_large_bodies * sizes.edges_of_parts()) return sizes;
+  const auto [known, is_new] = stabilized_.try_emplace(problem_.scheme);
+  if (is_new) known->second = stabilized(problem_, data, sizes);
+  return known->second;
 }
 
 /// By a mesh of the shape of those that it asks for.
@@ -224,14 +232,12 @@ Counts Estimation::count() {
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
   const std::optional<Coarser> coarse =
       is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;
-  // Few, or half as many more where no coarser one of few shows the shape: nothing else tells that of a given
-  // mesh.
-  const bool is_given = std::holds_alternative<MeshData>(problem_.domain);
-  const std::int64_t most =
-      is_given || (is_large && !(coarse && coarse->has_few)) ? most_of_own_shape : few_triangles;
+  // Few, or half as many more where no coarser one of few shows the shape.
+  const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
   const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
-  if (!has_formula && sizes.triangles <= std::min(most, may_be_made_)) mesh = make(problem_.mesh, most);
+  if (!has_formula && !brings_large_mesh(problem_.domain) && sizes.triangles <= std::min(most, may_be_made_))
+    mesh = make(problem_.mesh, most);
   if (mesh && problem_.mesh.refine == 0) mesh = stabilized(problem_, *std::move(mesh));
   if (mesh) sizes = sizes_of(*mesh);
   const std::int64_t triangles = refined(sizes, problem_.mesh.refine).triangles;
@@ -239,6 +245,7 @@ Counts Estimation::count() {
     cut_finer(*mesh, triangles, Shows::itself);
   } else if (const auto* data = std::get_if<MeshData>(&problem_.domain)) {
     if (!pieces_) cut(*data);
+    if (problem_.mesh.refine == 0 && !pieces_->empty()) sizes = with_small_bodies(*data, sizes);
   } else if (coarse && may_be_cut_ > 0) {
     cut_coarser(coarse->request, triangles);
   }
@@ -288,6 +295,17 @@ std::int64_t stress_unknowns(const Spaces& spaces, const Counts& counts) {
   return counts.edges * spaces.traces_per_edge() + counts.triangles * inner;
 }
 
+/// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
+/// from few are often alike, and those of a refinement have two shapes, one turned round.
+double Estimation::own_shapes(double triangles) const {
+  constexpr double of_bisected = 0.5, of_refined = 2;
+  if (!is_constant(problem_.material)) return 1;
+  if (is_rectangle()) return problem_.mesh.adaptive ? of_bisected : 0;
+  if (problem_.mesh.adaptive) return 1;
+  if (pieces_ && are_alike_) return pieces_->shapes(triangles) / triangles;
+  return std::min(1., of_refined / std::exp2(2 * problem_.mesh.refine));
+}
+
 Estimate Estimation::operator()() {
   const Counts counts = count();
   return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts);
@@ -321,6 +339,7 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
                          contact,
                          pieces_ ? &*pieces_ : nullptr,
                          counts.across,
+                         own_shapes(static_cast<double>(estimate.triangles)),
                          boundary,
                          static_cast<double>(conditions_.size())};
   estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);

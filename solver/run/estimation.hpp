@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -49,8 +50,8 @@ class Estimation {
   }
 
  private:
-  /// Whether the mesh that is cut is the one that is solved on, or another that but shows the shape of its
-  /// pieces, as a coarser one does: then its pieces are not alike where those are.
+  /// Whether the mesh that is cut is the one that is solved on, or that one before uniform refinements, or
+  /// another that but shows the shape of its pieces: then they are not alike where those are.
   enum class Shows { itself, another };
 
   /// A mesh that shows the shape of a finer one.
@@ -85,6 +86,7 @@ class Estimation {
            const EdgesOfPart& edges_of, Shows shows);
   void cut(const Mesh& mesh, Shows shows = Shows::itself);
   void cut(const MeshData& data);
+  MeshSizes with_small_bodies(const MeshData& data, const MeshSizes& sizes);
   void cut_finer(Mesh mesh, std::int64_t triangles, Shows shows);
   std::optional<Mesh> make(const MeshRequest& request, std::int64_t most);
   void cut_coarser(const MeshRequest& coarse, std::int64_t triangles);
@@ -92,6 +94,7 @@ class Estimation {
   std::int64_t contact_unknowns_of_rectangle(const MeshSizes& sizes) const;
   std::int64_t contact_unknowns(const MeshSizes& sizes) const;
   std::int64_t nodes_in_the_middle(std::size_t part, const MeshSizes& sizes) const;
+  double own_shapes(double triangles) const;
 
   Problem problem_;
   const Factorization by_;
@@ -102,6 +105,8 @@ class Estimation {
   std::int64_t may_be_made_ = most_of_own_shape;  ///< together, of meshes that are made to be counted
   std::int64_t may_be_cut_ = 2 * most_cut;        ///< of those, and of their refinements
   std::optional<MeshPieces> pieces_;              ///< of a mesh that is made, or given
+  std::map<Scheme, MeshSizes> stabilized_;        ///< of a given mesh that is not made
+  bool are_alike_ = false;                        ///< pieces that are so on the mesh that is solved on
 };
 
 }  // namespace signorini

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "fem/per_shape.hpp"
+#include "mesh/corner_order.hpp"
 #include "mesh/edge_table.hpp"
 #include "progress/observer.hpp"
 #include "progress/progress.hpp"
@@ -133,31 +134,35 @@ FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangle
                     spaces, triangles, contact_unknowns);
 }
 
-MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<int, 3>> triangles,
                        const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components,
-                       bool repeated)
+                       bool alike)
     : triangles_(static_cast<double>(triangles.size())) {
   if (!std::ranges::all_of(triangles, [&](const auto& triangle) { return exist(triangle, points); })) return;
+  for (std::array<int, 3>& triangle : triangles) triangle = in_order(triangle, points);
   std::vector<std::pair<std::array<int, 2>, const Condition*>> conditions;
   for (const auto& [condition, edges] : boundary)
     for (const auto& edge : *edges) conditions.emplace_back(ascending(edge), condition);
   std::ranges::sort(conditions);
 
-  // The unknowns of the dissection: an edge each, a point each, and those edges again that are contact.
+  // The unknowns of the dissection: an edge each, a point each, and those edges again that are contact; in an
+  // element by the corners, so that the elements of one shape have theirs in one order.
   constexpr int nowhere = -1, edges_at = 0, points_at = 3, contact_at = 6;
   ElementSum sum;
   sum.per_element = 9;
   sum.unknowns.assign(9 * triangles.size(), nowhere);
   sum.matrix_of.resize(triangles.size());
-  const auto place = [&](int triangle, int kind) {
-    const auto first = sum.unknowns.begin() + 9 * static_cast<std::ptrdiff_t>(triangle) + kind;
-    return std::find(first, first + 2, nowhere);
+  const auto place = [&](const TriangleEdge& side, int kind) -> int& {
+    const int corner = opposite(triangles[side.triangle], side.points);
+    return sum.unknowns[9 * static_cast<std::size_t>(side.triangle) + kind + corner];
   };
   // As assemble() numbers them: by their shapes, and by the sides on which their traces are turned.
   std::iota(sum.matrix_of.begin(), sum.matrix_of.end(), 0);
-  if (repeated) number_shapes(points, triangles, sum.matrix_of);
+  if (alike) number_shapes(points, triangles, sum.matrix_of);
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t) shapes_ += sum.matrix_of[t] == t ? 1 : 0;
   for (int& number : sum.matrix_of) number *= 8;
-  std::vector<int> traces, contact;
+  std::vector<int> traces;
+  std::vector<TriangleEdge> contact;
   EdgeTable(triangles).for_each_edge([&](const auto& sides) {
     const auto known =
         std::ranges::lower_bound(conditions, sides[0].points, {}, &decltype(conditions)::value_type::first);
@@ -165,14 +170,12 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
         sides.size() == 1 && known != conditions.end() && known->first == sides[0].points ? known->second
                                                                                           : nullptr;
     if (const int unknown = traces_on(condition, components); unknown > 0) {
-      for (const TriangleEdge& side : sides)
-        *place(side.triangle, edges_at) = static_cast<int>(traces.size());
+      for (const TriangleEdge& side : sides) place(side, edges_at) = static_cast<int>(traces.size());
       traces.push_back(unknown);
       if (unknown < components)
         sum.matrix_of[sides[0].triangle] += 1 << opposite(triangles[sides[0].triangle], sides[0].points);
     }
-    if (condition != nullptr && std::holds_alternative<Contact>(*condition))
-      contact.push_back(sides[0].triangle);
+    if (condition != nullptr && std::holds_alternative<Contact>(*condition)) contact.push_back(sides[0]);
   });
   const int with_traces = static_cast<int>(traces.size());
   const int with_rotation = components == 2 ? static_cast<int>(points.size()) : 0;
@@ -183,7 +186,7 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
       sum.unknowns[9 * static_cast<std::size_t>(t) + points_at + i] = with_traces + triangles[t][i];
   }
   for (int i = 0; i < static_cast<int>(contact.size()); ++i)
-    *place(contact[i], contact_at) = with_traces + with_rotation + i;
+    place(contact[i], contact_at) = with_traces + with_rotation + i;
   sum.size = with_traces + with_rotation + static_cast<int>(contact.size());
   contact_edges_ = static_cast<double>(contact.size());
 
@@ -225,6 +228,11 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, const std::vector<std::
     if (sum_of_own.minCoeff() > 0)
       pieces_.back().across = all.sizes().x() / sum_of_own.x() / (all.sizes().y() / sum_of_own.y());
   });
+}
+
+/// The parts of a triangle have two, one turned round.
+double MeshPieces::shapes(double triangles) const {
+  return std::min(triangles, (triangles > triangles_ ? 2 : 1) * shapes_);
 }
 
 /// A leaf with so many triangles more than a leaf has: its squares are cut as it lies there.

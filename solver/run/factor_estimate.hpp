@@ -35,18 +35,21 @@ class MeshPieces {
  public:
   using Edges = std::vector<std::array<int, 2>>;  ///< as pairs of points
 
-  /// The edges of each condition that there is on the boundary. Of `repeated` pieces that are alike one is
-  /// kept (system/repeated_pieces.hpp). A mesh that nobody has checked may have numbers of points that do not
-  /// exist: then there are no pieces.
-  MeshPieces(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
+  /// The edges of each condition that there is on the boundary. `alike`: triangles of a shape share their
+  /// matrix, so that pieces may be alike (system/repeated_pieces.hpp). A mesh that nobody has checked may
+  /// have numbers of points that do not exist: then there are no pieces.
+  MeshPieces(const std::vector<Point>& points, std::vector<std::array<int, 3>> triangles,
              const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components,
-             bool repeated);
+             bool alike);
 
   bool empty() const { return pieces_.empty(); }
   double triangles() const { return triangles_; }  ///< of the mesh that was cut
 
+  /// The matrices of the mesh with so many triangles, by uniform refinements.
+  double shapes(double triangles) const;
+
   /// Of the mesh with so many triangles, by uniform refinements or about such, and so many contact unknowns.
-  /// `repeated`: triangles of a shape share their matrix, so that pieces may be alike.
+  /// `repeated`: of pieces that are alike one is kept.
   FactorBytes factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
                            bool repeated) const;
 
@@ -68,7 +71,7 @@ class MeshPieces {
   };
   FactorBytes within(const Piece& leaf, const Spaces& spaces, double triangles, double contact) const;
 
-  double triangles_, contact_edges_ = 0;
+  double triangles_, shapes_ = 0, contact_edges_ = 0;
   std::vector<Piece> pieces_;  ///< the halves before the whole
 };
 

@@ -15,21 +15,11 @@ namespace signorini {
 namespace {
 
 constexpr double kNumber = sizeof(double), kIndex = sizeof(int);
-/// A vector that grows has at most so many times the room that it needs.
-constexpr double kGrowth = 2;
 /// What the fronts and the allocator add to what is counted here.
-constexpr double kSlack = 1.15;
+constexpr double kSlack = 1.13;
 /// Whether it is the same everywhere.
 bool is_uniform(const VectorField& field) {
   return std::ranges::all_of(field.fields(), &Field::is_constant);
-}
-
-/// The part of the triangles that have a shape of their own, which no other shares. Those that are bisected
-/// from few are often alike.
-double of_own_shape(const Problem& problem) {
-  if (!is_constant(problem.material) || !std::holds_alternative<Rectangle>(problem.domain)) return 1;
-  constexpr double of_bisected = 0.5;
-  return problem.mesh.adaptive ? of_bisected : 0;
 }
 
 /// Whether hardly any triangle has a load of its own: neighbours share one.
@@ -56,7 +46,7 @@ Grid grid_of(const Problem& problem, double triangles, bool repeated) {
           rectangle.size.x() / (finer * x),
           rectangle.size.y() / (finer * y),
           true,
-          repeated && of_own_shape(problem) == 0 && problem.mesh.refine == 0 ? kinds : 0};
+          repeated && is_constant(problem.material) && !problem.mesh.adaptive ? kinds : 0};
 }
 
 /// Cuts through arms that lie side by side may run along one of them: by so many times are their fronts
@@ -123,9 +113,9 @@ double discretization(const VectorField& body, const Spaces& spaces) {
 }
 
 /// The sum that is factored: numbers and place of a triangle, and the matrix of its shape.
-double element_sum(const Spaces& spaces, double of_own_shape) {
+double element_sum(const Spaces& spaces, double own_shapes) {
   const double own = dofs_per_triangle(spaces);
-  return kIndex * (own + 1) + sizeof(Point) + kGrowth * of_own_shape * kNumber * own * own;
+  return kIndex * (own + 1) + sizeof(Point) + own_shapes * kNumber * own * own;
 }
 
 /// What the factorisation takes beside the factor and the sum: its stacks, or the sparse matrix of CHOLMOD.
@@ -144,18 +134,18 @@ double while_factoring(const FactorBytes& made, const Spaces& spaces, const Solv
 
 /// What a triangle takes while the pair of an elastic body is relaxed: the form of its shape, the slope, its
 /// unknowns, and the triangles at half a point.
-double relaxation(double of_own_shape) {
+double relaxation(double own_shapes) {
   constexpr double at_point = 100, unknowns = 4;
   return kIndex + sizeof(TriangleForms::Vector) + unknowns * (2 * kNumber + kIndex) + at_point / 2 +
-         of_own_shape * sizeof(TriangleForms::Matrix);
+         own_shapes * sizeof(TriangleForms::Matrix);
 }
 
 /// What a triangle takes while the error is bounded: the admissible pair and its shares, and the law if it
 /// varies.
-double certificate(const Problem& problem, const Spaces& spaces) {
+double certificate(const Problem& problem, const Spaces& spaces, double own_shapes) {
   constexpr double pair = 170, of_cut = 64;
   return pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut) +
-         (spaces.components == 2 ? relaxation(of_own_shape(problem)) : 0);
+         (spaces.components == 2 ? relaxation(own_shapes) : 0);
 }
 
 /// Whether all is known of the load and of the tractions.
@@ -248,11 +238,11 @@ double memory_of_levels(const Spaces& spaces, double triangles) {
   return all * triangles * (kNumber * numbers + 3 * sizeof(int));
 }
 
-/// What an edge of the boundary takes more than one inside, with its points, where there are more of them
-/// than a strip of triangles has; and each part, for its conditions, names and what it supports. As measured
-/// of triangles that touch no other, and of parts of one edge.
+/// What an edge of the boundary takes more than one inside, with its points and the bodies that they make,
+/// where there are more of them than a strip of triangles has; and each part, for its conditions, names and
+/// what it supports. As measured of triangles that touch no other, and of parts of one edge.
 double on_boundary(const SolveSizes& sizes) {
-  constexpr double of_edge = 325, of_part = 2500;
+  constexpr double of_edge = 1100, of_part = 2500;
   return of_edge * std::max(0., sizes.boundary - sizes.triangles) + of_part * sizes.parts;
 }
 
@@ -260,23 +250,24 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
                        Factorization by) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
   const double complement = kNumber * sizes.contact * sizes.contact;
-  const double kept = made.panels + kGrowth * made.fronts + complement +
+  const double kept = made.panels + made.fronts + complement +
                       sizes.triangles * (kMesh + discretization(problem.body, spaces));
   const double right = kNumber * sizes.system;
   const double factoring = while_factoring(made, spaces, sizes, by) + complement + right +
-                           sizes.triangles * element_sum(spaces, of_own_shape(problem));
+                           sizes.triangles * element_sum(spaces, sizes.own_shapes);
   // The fields as they were found, the solution, and what is made on the way to it.
   const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
-  const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
-                            sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces)) +
-                            carrying(problem, spaces, sizes.triangles) + tables(problem, spaces);
+  const double certifying =
+      2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
+      sizes.triangles * (kNumber * spaces.stresses() + certificate(problem, spaces, sizes.own_shapes)) +
+      carrying(problem, spaces, sizes.triangles) + tables(problem, spaces);
   // Extensions have the components in a point of a cut, where traces and rotations have more on a side.
   const double on_side = spaces.traces_per_edge() + (spaces.rotations() ? 1 : 0), d = spaces.components;
   const double of_factor = d * d / (on_side * on_side) * while_factoring(made, spaces, sizes, by);
   const double enclosing = memory_of_solution(spaces, sizes.triangles) + of_factor +
                            d * d / (on_side * on_side) * made.panels +
                            sizes.triangles * (3 * d * sizeof(int) + sizeof(int) + sizeof(Point) +
-                                              3 * kNumber * d + of_own_shape(problem) * 9 * d * d * kNumber);
+                                              3 * kNumber * d + sizes.own_shapes * 9 * d * d * kNumber);
   // A mesh that refines itself keeps the solution of the level before, and what is seen of all.
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
                                                     memory_of_levels(spaces, sizes.triangles)
@@ -292,7 +283,7 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
   // P and D, and the fields of an iterate.
   const double iteration = kNumber * displacements * (own + displacements + 5);
-  return kSlack * (made.panels + kGrowth * made.fronts + while_factoring(made, spaces, free, by) +
+  return kSlack * (made.panels + made.fronts + while_factoring(made, spaces, free, by) +
                    3 * kNumber * sizes.system + on_boundary(sizes) +
                    sizes.triangles *
                        (kMesh + discretization(problem.body, spaces) + element_sum(spaces, 1) + iteration));

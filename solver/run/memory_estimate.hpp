@@ -14,6 +14,7 @@ struct SolveSizes {
   double contact = 0;                  ///< contact unknowns
   const MeshPieces* pieces = nullptr;  ///< of the mesh, or of one that it comes from, where there is one
   double across = 0;                   ///< MeshSizes::across
+  double own_shapes = 1;               ///< the part of the triangles that have a matrix of their own
   double boundary = 0, parts = 0;      ///< edges of the boundary, and parts that they belong to
 };
 

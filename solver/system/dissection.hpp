@@ -90,6 +90,8 @@ class Dissection {
 
   std::shared_ptr<const ElementTree> tree_;
   std::vector<int> eliminated_in_;  ///< the piece of each unknown
+  std::vector<int> found_as_;       ///< of each unknown: how many were found before it, leaf by leaf; its
+                                    ///< number if it is a trailing one
   std::vector<Place> places_;       ///< of each piece's front in unknowns_
   std::vector<int> unknowns_;
 };

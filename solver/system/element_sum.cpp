@@ -5,18 +5,19 @@
 namespace signorini {
 
 int ElementSum::keep(const double* values) {
-  const std::size_t count = static_cast<std::size_t>(per_element) * per_element;
-  matrices.insert(matrices.end(), values, values + count);
-  return static_cast<int>(matrices.size() / count) - 1;
+  if (blocks.empty() || blocks.back().size() == kPerBlock * numbers())
+    blocks.emplace_back().reserve(kPerBlock * numbers());
+  std::vector<double>& last = blocks.back();
+  last.insert(last.end(), values, values + numbers());
+  return static_cast<int>((blocks.size() - 1) * kPerBlock + last.size() / numbers()) - 1;
 }
 
 int ElementSum::keep(const double* values, std::vector<int>& known) {
   constexpr std::size_t few = 8;
-  const std::size_t count = static_cast<std::size_t>(per_element) * per_element;
   constexpr double rounding = 1e-12;
-  const Eigen::Map<const Eigen::VectorXd> given(values, static_cast<Eigen::Index>(count));
+  const Eigen::Map<const Eigen::VectorXd> given(values, static_cast<Eigen::Index>(numbers()));
   const auto equal = std::ranges::find_if(known, [&](int own) {
-    const Eigen::Map<const Eigen::VectorXd> other(matrices.data() + own * count, given.size());
+    const Eigen::Map<const Eigen::VectorXd> other(kept(own), given.size());
     return (given - other).lpNorm<Eigen::Infinity>() <= rounding * given.lpNorm<Eigen::Infinity>();
   });
   if (equal != known.end()) return *equal;

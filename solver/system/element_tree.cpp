@@ -23,9 +23,9 @@ ElementTree::ElementTree(const ElementSum& sum, Progress& progress)
   const auto halve = [&](const auto& self, std::span<Centre> elements, int leaves) -> void {
     if (leaves == 1) {
       first_element_.push_back(elements_.size());
+      // By where they lie, so that leaves are alike that have the same elements, whatever their numbers.
+      std::ranges::sort(elements, {}, [](const Centre& centre) { return centre.at[1]; });
       for (const Centre& centre : elements) elements_.push_back(centre.element);
-      // So that leaves are alike that have the same elements.
-      std::sort(elements_.end() - static_cast<std::ptrdiff_t>(elements.size()), elements_.end());
       return;
     }
     progress.check();

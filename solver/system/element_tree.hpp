@@ -24,7 +24,7 @@ class ElementTree {
   int leaves() const { return leaves_; }
   int pieces() const { return 2 * leaves_; }  ///< one more than the largest number
   bool is_leaf(int piece) const { return piece >= leaves_; }
-  /// The elements of a leaf, in the order of their numbers.
+  /// The elements of a leaf, in rows along x from below.
   std::span<const int> elements(int leaf) const {
     const std::size_t first = first_element_[leaf - leaves_];
     return std::span(elements_).subspan(first, first_element_[leaf - leaves_ + 1] - first);

@@ -43,8 +43,7 @@ struct PlacedMatrix {
  private:
   void add(ElementSum& sum, int i, int j, const std::array<double, 4>& matrix) const {
     sum.unknowns.insert(sum.unknowns.end(), {i, j});
-    sum.matrix_of.push_back(static_cast<int>(sum.matrices.size() / 4));
-    sum.matrices.insert(sum.matrices.end(), matrix.begin(), matrix.end());
+    sum.matrix_of.push_back(sum.keep(matrix.data()));
     sum.centres.emplace_back((points[i] + points[j]) / 2);
   }
 };

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "mesh/domain_mesh.hpp"
+#include "mesh/rectangle.hpp"
 #include "problems/elasticity.hpp"
 #include "problems/families.hpp"
 #include "problems/long_tests.hpp"
@@ -153,6 +155,70 @@ TEST_P(Memory, OfManyBodies) {
         for (const std::string& name : part_names(problem.domain)) problem.boundary[name] = condition;
         expect_bound(problem);
       }
+}
+
+/// Bodies of one triangle that one edge holds, which are halved, more of them than are made to be foreseen.
+TEST_P(Memory, OfManyBodiesThatAreHalved) {
+  MeshData islands;
+  std::vector<std::array<int, 2>> held, rest;
+  for (int i = 0; i < 6500; ++i) {
+    const double x = 2 * (i % 80), y = 2 * (i / 80);
+    for (const Point& corner : {Point(x, y), Point(x + 1, y), Point(x, y + 1)})
+      islands.points.push_back(corner);
+    islands.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    held.push_back({3 * i, 3 * i + 1});
+    for (int e = 1; e < 3; ++e) rest.push_back({3 * i + e, 3 * i + (e + 1) % 3});
+  }
+  islands.boundary = {{"held", held}, {"rest", rest}};
+  Problem problem = elastic(GetParam(), 1, 1);
+  problem.mesh = {};
+  problem.domain = islands;
+  problem.boundary = {{"held", Fixed{}}, {"rest", Traction{VectorField(Field(1), Field(0))}}};
+  EXPECT_EQ(estimate(problem).triangles, 4 * 6500);
+  expect_bound(problem);
+}
+
+/// A mesh of squares, its points, triangles and corners in any order.
+MeshData shuffled_squares(int n) {
+  const Mesh mesh = rectangle_mesh({{0, 0}, {3, 2}}, {n, n}, Pattern::right);
+  std::mt19937 engine(5);
+  std::vector<int> place(mesh.points.size());
+  std::iota(place.begin(), place.end(), 0);
+  std::shuffle(place.begin(), place.end(), engine);
+  MeshData data;
+  data.points.resize(mesh.points.size());
+  for (std::size_t p = 0; p < place.size(); ++p) data.points[place[p]] = mesh.points[p];
+  for (std::array<int, 3> triangle : mesh.triangles) {
+    for (int& corner : triangle) corner = place[corner];
+    std::shuffle(triangle.begin(), triangle.end(), engine);
+    data.triangles.push_back(triangle);
+  }
+  std::shuffle(data.triangles.begin(), data.triangles.end(), engine);
+  for (const BoundaryPart& part : mesh.boundary) {
+    auto& [name, edges] = data.boundary.emplace_back(part.name, std::vector<std::array<int, 2>>());
+    for (const int edge : part.edges)
+      edges.push_back({place[mesh.edges[edge][0]], place[mesh.edges[edge][1]]});
+  }
+  return data;
+}
+
+/// Pieces of them are alike all the same, refined or not, made to be foreseen or too large for that.
+TEST_P(Memory, OfSquaresInAnyOrder) {
+  for (const auto& [squares, refine] :
+       {std::pair(50, 0), std::pair(20, 2), std::pair(7, 4), std::pair(90, 0)}) {
+    SCOPED_TRACE(std::to_string(squares) + " refined " + std::to_string(refine));
+    Problem given = elastic(GetParam(), 1, 1),
+            made = elastic(GetParam(), squares << refine, squares << refine);
+    given.mesh = {};
+    given.mesh.refine = refine;
+    given.domain = shuffled_squares(squares);
+    made.domain = Rectangle{{0, 0}, {3, 2}};
+    expect_bound(given);
+    const auto peak_of = [](const Problem& problem) {
+      return static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes);
+    };
+    EXPECT_NEAR(peak_of(given) / peak_of(made), 1, 0.15);
+  }
 }
 
 TEST_P(Memory, OfOtherMeshesAndLaws) {

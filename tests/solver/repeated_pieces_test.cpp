@@ -25,7 +25,7 @@ ElementSum squares(int x, int y, const std::function<int(int i, int j, int trian
   for (int k = 0; k < kKinds; ++k) {
     const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr([&] { return number(engine); });
     const Eigen::Matrix3d matrix = root * root.transpose() + 0.1 * Eigen::Matrix3d::Identity();
-    sum.matrices.insert(sum.matrices.end(), matrix.data(), matrix.data() + 9);
+    sum.keep(matrix.data());
   }
   std::map<std::pair<bool, std::pair<int, int>>, int> numbers;
   const auto side = [&](int twice_x, int twice_y) -> int& {
@@ -52,11 +52,8 @@ ElementSum squares(int x, int y, const std::function<int(int i, int j, int trian
 /// The same with a matrix for each element: then none is known to be like another.
 ElementSum apart(const ElementSum& sum) {
   ElementSum own = sum;
-  own.matrices.clear();
-  for (int e = 0; e < sum.elements(); ++e) {
-    own.matrices.insert(own.matrices.end(), sum.matrix(e), sum.matrix(e) + 9);
-    own.matrix_of[e] = e;
-  }
+  own.blocks.clear();
+  for (int e = 0; e < sum.elements(); ++e) own.matrix_of[e] = own.keep(sum.matrix(e));
   return own;
 }
 

@@ -115,7 +115,6 @@ class Motions {
     const std::size_t edges = mesh_.edges.size();
     sum.unknowns.reserve(edges * 2 * kOwn);
     sum.matrix_of.reserve(edges);
-    sum.matrices.reserve(edges * OfPair::SizeAtCompileTime);
     sum.centres.reserve(edges);
     for (int edge = 0; edge < static_cast<int>(mesh_.edges.size()); ++edge) {
       if (!counts(edge)) continue;
@@ -135,8 +134,7 @@ class Motions {
            const Point& centre) const {
     for (const int t : triangles)
       for (int k = 0; k < kOwn; ++k) sum.unknowns.push_back(first(t) < 0 ? -1 : first(t) + k);
-    sum.matrix_of.push_back(static_cast<int>(sum.matrix_of.size()));
-    sum.matrices.insert(sum.matrices.end(), matrix.data(), matrix.data() + matrix.size());
+    sum.matrix_of.push_back(sum.keep(matrix.data()));
     sum.centres.push_back(centre);
   }
 
