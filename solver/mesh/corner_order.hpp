@@ -19,7 +19,7 @@ inline std::array<int, 3> in_order(std::array<int, 3> triangle, const std::vecto
   };
   if (twice_area(points[triangle[0]], points[triangle[1]], points[triangle[2]]) < 0)
     std::swap(triangle[1], triangle[2]);
-  std::ranges::rotate(triangle, std::ranges::min_element(triangle, {}, height));
+  std::rotate(triangle.begin(), std::ranges::min_element(triangle, {}, height), triangle.end());
   return triangle;
 }
 
