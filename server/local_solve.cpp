@@ -13,6 +13,7 @@
 #include "server/exit_code.hpp"
 #include "server/failure.hpp"
 #include "server/jobs/kept_operators.hpp"
+#include "server/machine_memory.hpp"
 #include "server/terminal.hpp"
 
 namespace signorini::server {
@@ -150,6 +151,7 @@ int find_and_write(std::int64_t triangles, const std::function<void(Observer&)>&
 
 int run_locally(const std::function<int()>& command) {
   share_cores(1);
+  keep_freed_memory();
   try {
     return command();
   } catch (const BadInput& bad) {

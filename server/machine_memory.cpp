@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 
+#include <malloc.h>
 #include <unistd.h>
 
 namespace signorini::server {
@@ -16,6 +18,12 @@ std::size_t machine_memory() {
     if (std::ifstream(file) >> limit && limit > 0) bytes = std::min(bytes, limit);
   }
   return bytes;
+}
+
+void keep_freed_memory() {
+  // As large as malloc allows: larger blocks are mapped by themselves.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 }
 
 }  // namespace signorini::server
