@@ -146,7 +146,7 @@ Mesh stabilized(const Problem& problem, Mesh mesh, Progress* progress) {
   if (components(problem.material) == 1) return mesh;
   const std::vector<int> unstable = to_be_halved(problem.scheme, bodies_of(problem, mesh));
   if (unstable.empty()) return mesh;
-  Mesh finer = bisect(with_longest_edges_first(mesh), unstable, progress);
+  Mesh finer = with_lowest_corners_first(bisect(with_longest_edges_first(mesh), unstable, progress));
   finer.notes = std::move(mesh.notes);
   finer.notes.push_back(
       "the spaces for elasticity are not stable on the " + std::to_string(mesh.triangles.size()) +

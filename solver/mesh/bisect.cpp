@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/corner_order.hpp"
 #include "mesh/make_mesh.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/upright.hpp"
@@ -105,19 +106,33 @@ class Bisection {
   std::vector<int> parents_;
 };
 
+/// Of each triangle the corner `first_of(mesh, triangle)` comes first.
+template <typename FirstOf>
+Mesh turned(Mesh mesh, const FirstOf& first_of) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto first = first_of(mesh, t);
+    std::rotate(mesh.triangle_edges[t].begin(), mesh.triangle_edges[t].begin() + first,
+                mesh.triangle_edges[t].end());
+    std::rotate(mesh.triangles[t].begin(), mesh.triangles[t].begin() + first, mesh.triangles[t].end());
+  }
+  return mesh;
+}
+
 }  // namespace
 
 Mesh with_longest_edges_first(Mesh mesh) {
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    auto& edges = mesh.triangle_edges[t];
-    const auto longest =
-        std::ranges::max_element(edges, {}, [&](int edge) { return std::pair(mesh.length(edge), edge); });
-    const auto turn = longest - edges.begin();
-    std::rotate(edges.begin(), edges.begin() + turn, edges.end());
-    auto& corners = mesh.triangles[t];
-    std::rotate(corners.begin(), corners.begin() + turn, corners.end());
-  }
-  return mesh;
+  return turned(std::move(mesh), [](const Mesh& of, std::size_t t) {
+    const auto& edges = of.triangle_edges[t];
+    return std::ranges::max_element(edges, {}, [&](int edge) { return std::pair(of.length(edge), edge); }) -
+           edges.begin();
+  });
+}
+
+Mesh with_lowest_corners_first(Mesh mesh) {
+  return turned(std::move(mesh), [](const Mesh& of, std::size_t t) {
+    return std::ranges::find(of.triangles[t], in_order(of.triangles[t], of.points)[0]) -
+           of.triangles[t].begin();
+  });
 }
 
 Mesh bisect(const Mesh& mesh, const std::vector<int>& marked, Progress* progress) {

@@ -11,6 +11,9 @@ class Progress;
 /// taken, by both of its triangles.
 Mesh with_longest_edges_first(Mesh mesh);
 
+/// The mesh with its triangles in the order of mesh/corner_order.hpp: one that is not to be cut further.
+Mesh with_lowest_corners_first(Mesh mesh);
+
 /// Newest-vertex bisection (Mitchell 1991): halves the edges of the marked triangles, and as many others as
 /// it takes to keep the mesh conforming. A triangle is halved from its first vertex, and each half has the
 /// new point for its first vertex, so that the descendants of a triangle have at most four shapes, however

@@ -61,7 +61,7 @@ class Estimation {
   };
 
   /// Meshes of so many triangles are cut into pieces to see what their factor takes.
-  static constexpr std::int64_t most_cut = 3 * few_triangles;
+  static constexpr std::int64_t most_cut = 4 * few_triangles;
 
   /// And so many are made if no mesh of few shows the shape: some twentieth of a second at most, together.
   static constexpr std::int64_t most_of_own_shape = 3 * few_triangles / 2;

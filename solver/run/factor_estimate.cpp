@@ -245,6 +245,10 @@ FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double t
 
 FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
                                      bool repeated) const {
+  // A lattice of one shape, and the same turned round, is one again when it is refined. Of other meshes it is
+  // not known.
+  constexpr double of_lattice = 2;
+  repeated = repeated && (triangles <= triangles_ || shapes_ <= of_lattice);
   const double growth = std::sqrt(triangles / triangles_),
                leaves = static_cast<double>(pieces_.size() + 1) / 2;
   const double per_contact = contact_edges_ > 0 ? contact_unknowns / contact_edges_ : 0;

@@ -179,8 +179,8 @@ TEST_P(Memory, OfManyBodiesThatAreHalved) {
 }
 
 /// A mesh of squares, its points, triangles and corners in any order.
-MeshData shuffled_squares(int n) {
-  const Mesh mesh = rectangle_mesh({{0, 0}, {3, 2}}, {n, n}, Pattern::right);
+MeshData shuffled_squares(const Divisions& squares, Pattern pattern, const Vector& size = {3, 2}) {
+  const Mesh mesh = rectangle_mesh({{0, 0}, size}, squares, pattern);
   std::mt19937 engine(5);
   std::vector<int> place(mesh.points.size());
   std::iota(place.begin(), place.end(), 0);
@@ -211,7 +211,7 @@ TEST_P(Memory, OfSquaresInAnyOrder) {
             made = elastic(GetParam(), squares << refine, squares << refine);
     given.mesh = {};
     given.mesh.refine = refine;
-    given.domain = shuffled_squares(squares);
+    given.domain = shuffled_squares({squares, squares}, Pattern::right);
     made.domain = Rectangle{{0, 0}, {3, 2}};
     expect_bound(given);
     const auto peak_of = [](const Problem& problem) {
@@ -219,6 +219,62 @@ TEST_P(Memory, OfSquaresInAnyOrder) {
     };
     EXPECT_NEAR(peak_of(given) / peak_of(made), 1, 0.15);
   }
+}
+
+/// Refined, their diagonals alternate no more as they did, and few of their pieces are alike.
+TEST_P(Memory, OfAlternatingSquaresThatAreRefined) {
+  Problem problem = elastic(GetParam(), 1, 1);
+  problem.mesh = {};
+  problem.mesh.refine = 1;
+  problem.domain = shuffled_squares({41, 41}, Pattern::alternating);
+  problem.boundary = {{"left", Fixed{}}, {"right", Fixed{}}, {"bottom", Fixed{}}, {"top", Fixed{}}};
+  expect_bound(problem);
+}
+
+/// All of whose triangles lie on a support, or at a contact.
+TEST_P(Memory, OfThinBodies) {
+  for (const Pattern pattern : {Pattern::right, Pattern::alternating}) {
+    Problem strip = elastic(GetParam(), 1500, 1);
+    strip.mesh.pattern = pattern;
+    strip.boundary = {{"left", Roller{}}, {"right", Roller{}}, {"bottom", Roller{}}, {"top", Roller{}}};
+    expect_bound(strip);
+    strip.mesh = {};
+    strip.domain = shuffled_squares({3000, 1}, pattern);
+    expect_bound(strip);
+  }
+  Problem column = elastic(GetParam(), 1, 1);
+  column.mesh = {};
+  column.mesh.refine = 1;
+  column.domain = shuffled_squares({2, 235}, Pattern::crossed, {1, 235});
+  column.body = VectorField(Field(0), Field(-1));
+  column.boundary = {{"bottom", Fixed{}},
+                     {"right", Contact{Field(0)}},
+                     {"left", Traction{VectorField(Field(0), Field(-0.1))}}};
+  expect_bound(column);
+}
+
+/// Bodies that meet in one point: whatever cuts them in two cuts through many.
+TEST_P(Memory, OfAStar) {
+  MeshData star;
+  star.points = {{0, 0}};
+  constexpr int count = 800;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * i / count, width = std::numbers::pi / count;
+    const int next = static_cast<int>(star.points.size());
+    for (const double at : {angle, angle + width}) star.points.push_back({std::cos(at), std::sin(at)});
+    star.triangles.push_back({0, next, next + 1});
+    for (const std::array<int, 2>& edge : {std::array{0, next}, {next, next + 1}, {next + 1, 0}})
+      if (star.boundary.empty())
+        star.boundary.emplace_back("all of it", std::vector{edge});
+      else
+        star.boundary[0].second.push_back(edge);
+  }
+  Problem problem = elastic(GetParam(), 1, 1);
+  problem.mesh = {};
+  problem.mesh.refine = GetParam() == Scheme::conforming ? 1 : 0;
+  problem.domain = star;
+  problem.boundary = {{"all of it", Roller{}}};
+  expect_bound(problem);
 }
 
 TEST_P(Memory, OfOtherMeshesAndLaws) {

@@ -168,6 +168,12 @@ class Relaxation {
     return {a, b, c, points + d, points + e, points + f};
   }
 
+  struct Shape {
+    Condensed own;
+    int number = -1;
+    std::vector<int> turned = {};  ///< numbers with nodes that may move along lines only
+  };
+
   void take_forms(Progress& progress) {
     for (const NodeFreedom& own : freedom_) {
       forms_.held.push_back(own.held);
@@ -176,33 +182,30 @@ class Relaxation {
     forms_.matrix_of.reserve(discrete_.triangles());
     forms_.slopes.reserve(discrete_.triangles());
     LawField<2> law(discrete_.problem.material);
-    struct Shape {
-      Condensed own;
-      int number = -1;
-    };
     const bool is_constant = discrete_.element.has_constant_material();
     PerShape<Shape> shapes(discrete_);
     for (int t = 0; t < discrete_.triangles(); ++t) {
       progress.check_in(t);
       Shape& shape =
           shapes(t, [&] { return Shape{condensed(AffineMap(mesh_.corners(t)), is_constant, law)}; });
-      add(t, shape.own, shape.number);
+      add(t, shape);
     }
   }
 
-  void add(int t, const Condensed& own, int& number) {
+  void add(int t, Shape& shape) {
+    const Condensed& own = shape.own;
     const std::array<int, 6> nodes = nodes_of(t);
     FormVector v;
     for (int k = 0; k < 6; ++k) v.segment<2>(2 * k) = value(nodes[k]);
     FormVector slope = own.stiffness * v - work_of_load(discrete_, t, own) - work_of_traction(discrete_, t);
     if (std::ranges::all_of(nodes, [&](int node) { return freedom_[node].normal.isZero(0); })) {
-      if (number < 0) number = forms_.keep(own.stiffness);
-      forms_.matrix_of.push_back(number);
+      if (shape.number < 0) shape.number = forms_.keep(own.stiffness);
+      forms_.matrix_of.push_back(shape.number);
     } else {
       Matrix turn = Matrix::Zero();
       for (int k = 0; k < 6; ++k) turn.block<2, 2>(2 * k, 2 * k) = axes(nodes[k]);
       slope = turn.transpose() * slope;
-      forms_.matrix_of.push_back(forms_.keep(turn.transpose() * own.stiffness * turn));
+      forms_.matrix_of.push_back(forms_.keep(turn.transpose() * own.stiffness * turn, shape.turned));
     }
     forms_.slopes.push_back(slope);
   }

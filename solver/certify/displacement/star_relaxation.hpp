@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <vector>
@@ -37,6 +38,19 @@ struct TriangleForms {
   int keep(const Matrix& matrix) {
     matrices.push_back(matrix);
     return static_cast<int>(matrices.size()) - 1;
+  }
+  /// That of one of the last few among `known` that is equal but for rounding, or takes it and adds its
+  /// number to them.
+  int keep(const Matrix& matrix, std::vector<int>& known) {
+    constexpr std::size_t few = 8;
+    constexpr double rounding = 1e-12;
+    const auto equal = std::ranges::find_if(known, [&](int own) {
+      return (matrices[own] - matrix).lpNorm<Eigen::Infinity>() <=
+             rounding * matrix.lpNorm<Eigen::Infinity>();
+    });
+    if (equal != known.end()) return *equal;
+    if (known.size() == few) known.erase(known.begin());
+    return known.emplace_back(keep(matrix));
   }
 
   /// The first of the unknowns of a point, of an edge.

@@ -63,7 +63,7 @@ class Minimization {
                         std::back_inserter(moving));
     }
     const Eigen::VectorXd found =
-        admissible_minimum(curvature_, slope_, moving, without_friction(), progress);
+        admissible_minimum(std::move(curvature_), slope_, moving, without_friction(), progress);
     move(moving, found, pressure_);
     store(found);
   }
@@ -182,8 +182,19 @@ class Minimization {
   void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
     const JohnsonMercierRule& rule = johnson_mercier_rule(discrete_.spaces(), 6);
     LawField<2> law(discrete_.problem.material);
+    curvature_.resize(slope_.size(), slope_.size());
+    // Entries are added up in parts no larger than what is there: all at once they would be several times
+    // that.
+    constexpr std::size_t few = 1 << 16;
     std::vector<Eigen::Triplet<double>> entries;
+    const auto add_up = [&] {
+      Eigen::SparseMatrix<double> part(slope_.size(), slope_.size());
+      part.setFromTriplets(entries.begin(), entries.end());
+      curvature_ += part;
+      entries.clear();
+    };
     for (int t = 0; t < discrete_.triangles(); ++t) {
+      if (entries.size() > std::max(few, static_cast<std::size_t>(curvature_.nonZeros()))) add_up();
       const auto& corners = mesh_.triangles[t];
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
       const AffineMap map(mesh_.corners(t));
@@ -214,8 +225,7 @@ class Minimization {
         }
       }
     }
-    curvature_.resize(slope_.size(), slope_.size());
-    curvature_.setFromTriplets(entries.begin(), entries.end());
+    add_up();
   }
 
   const Vector& direction(const AirySide& side) const {

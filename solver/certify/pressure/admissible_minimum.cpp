@@ -29,7 +29,7 @@ std::optional<Eigen::VectorXd> way_to_minimum(const Sparse& curvature, const Eig
                                               const Eigen::VectorXd& x, const FreeUnknowns& free) {
   const Sparse basis = free.basis(static_cast<int>(x.size()));
   if (basis.cols() == 0) return std::nullopt;
-  Sparse matrix = basis.transpose() * curvature * basis;
+  Sparse matrix = Sparse(basis.transpose() * curvature * basis).triangularView<Eigen::Lower>();
   matrix.diagonal() *= 1 + kRegular;
   const Eigen::SimplicialLDLT<Sparse> factor(matrix);
   if (factor.info() != Eigen::Success) return std::nullopt;
@@ -59,7 +59,7 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
           MovingPressure{i, 1, second, std::move(changes[1]), rooms[1], is_kept}};
 }
 
-Eigen::VectorXd admissible_minimum(const Sparse& curvature, Eigen::VectorXd slope,
+Eigen::VectorXd admissible_minimum(Sparse curvature, Eigen::VectorXd slope,
                                    std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
                                    Progress& progress) {
   // The unknowns may have units of their own.
@@ -73,14 +73,16 @@ Eigen::VectorXd admissible_minimum(const Sparse& curvature, Eigen::VectorXd slop
     to_scale(own.change);
     if (own.is_kept) conditions.push_back(own.change);
   }
-  const Sparse scaled = scale.asDiagonal() * curvature * scale.asDiagonal();
+  for (int column = 0; column < curvature.outerSize(); ++column)
+    for (Sparse::InnerIterator entry(curvature, column); entry; ++entry)
+      entry.valueRef() *= scale[entry.row()] * scale[column];
   slope = scale.cwiseProduct(slope);
   FreeUnknowns free;
   for (const LinearForm& condition : conditions) free.take_away(condition);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(slope.size());
   for (int step = 0; step < kSteps; ++step) {
     progress.check();
-    const std::optional<Eigen::VectorXd> change = way_to_minimum(scaled, slope, x, free);
+    const std::optional<Eigen::VectorXd> change = way_to_minimum(curvature, slope, x, free);
     if (!change) break;
     double way = 1;
     for (const MovingPressure& own : moving)

@@ -35,7 +35,7 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
 /// as p* ≥ 0 allows, where p* starts with its values. A primal active set: it goes towards the minimum until
 /// a pressure vanishes, keeps that, and goes on. p* ≥ 0 holds after every step, so that the last one may end
 /// anywhere.
-Eigen::VectorXd admissible_minimum(const Eigen::SparseMatrix<double>& curvature, Eigen::VectorXd slope,
+Eigen::VectorXd admissible_minimum(Eigen::SparseMatrix<double> curvature, Eigen::VectorXd slope,
                                    std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
                                    Progress& progress);
 
