@@ -130,7 +130,7 @@ Mesh with_longest_edges_first(Mesh mesh) {
 
 Mesh with_lowest_corners_first(Mesh mesh) {
   return turned(std::move(mesh), [](const Mesh& of, std::size_t t) {
-    return std::ranges::find(of.triangles[t], in_order(of.triangles[t], of.points)[0]) -
+    return std::ranges::find(of.triangles[t], from_lowest(of.triangles[t], of.points)[0]) -
            of.triangles[t].begin();
   });
 }

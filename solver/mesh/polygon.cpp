@@ -263,7 +263,7 @@ class Extraction {
     std::vector<BoundarySegment> segments;
     for (int part = 0; part < static_cast<int>(edges.size()); ++part)
       for (const auto& edge : in_chains(edges[part])) segments.push_back({edge, part, circles_.at(edge[0])});
-    for (std::array<int, 3>& triangle : triangles_) triangle = in_order(triangle, points_);
+    for (std::array<int, 3>& triangle : triangles_) triangle = from_lowest(triangle, points_);
     return make_mesh(std::move(points_), std::move(triangles_), parts.names, segments, rings_.circles,
                      progress);
   }

@@ -20,7 +20,7 @@ Mesh refine_once(const Mesh& mesh, Progress* progress) {
     const auto& edges = mesh.triangle_edges[t];
     const int bc = number + edges[0], ca = number + edges[1], ab = number + edges[2];
     for (const std::array<int, 3>& part : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
-      triangles.push_back(in_order(part, points));
+      triangles.push_back(from_lowest(part, points));
   }
 
   std::vector<BoundarySegment> segments;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mesh/polygon.hpp"
 #include "mesh/rectangle.hpp"
 #include "mesh_quality.hpp"
@@ -17,6 +19,14 @@ TEST(Refine, CutsEveryTriangleInFourSimilarOnes) {
   EXPECT_NEAR(smallest_angle(fine), smallest_angle(coarse), 1e-9);
   EXPECT_NEAR(longest_edge(fine), longest_edge(coarse) / 4, 1e-14);
   for (std::size_t p = 0; p < coarse.points.size(); ++p) EXPECT_EQ(fine.points[p], coarse.points[p]);
+}
+
+/// The arc over its side reaches beyond the opposite corner of a flat triangle.
+TEST(Refine, RefusesTrianglesThatAnArcTurnsOver) {
+  const Mesh flat =
+      make_mesh({{0, 0}, {1, 0}, {0.5, 0.05}}, {{0, 1, 2}}, {"arc", "rest"},
+                {{{0, 1}, 0, 0}, {{1, 2}, 1}, {{2, 0}, 1}}, {Circle{{0.5, -0.5}, std::sqrt(0.5)}});
+  EXPECT_THROW(refine(flat, 1), InvalidProblem);
 }
 
 TEST(Refine, KeepsPartsAndTheirOrder) {
