@@ -165,7 +165,7 @@ MeshSizes stabilized(const Problem& problem, const MeshData& data, MeshSizes siz
   const auto for_each_side = [&](const auto& visit) {
     for (std::size_t part = 0; part < data.boundary.size(); ++part)
       for (const auto& [a, b] : data.boundary[part].second)
-        if (const auto sides = edges.between({std::min(a, b), std::max(a, b)}); !sides.empty())
+        if (const auto sides = edges.between({a, b}); !sides.empty())
           visit(part, Segment{data.points[a], data.points[b]}, sides[0].triangle);
   };
   for_each_side([&](std::size_t part, const Segment& ends, int triangle) {

@@ -40,8 +40,8 @@ std::vector<std::vector<int>> bodies(const std::vector<std::array<int, 3>>& tria
                                      const EdgeTable& edges) {
   return joined(triangles.size(), [&](int triangle, const auto& visit) {
     for (int i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(triangles[triangle][i], triangles[triangle][(i + 1) % 3]);
-      for (const TriangleEdge& side : edges.between({a, b})) visit(side.triangle);
+      const std::array ends{triangles[triangle][i], triangles[triangle][(i + 1) % 3]};
+      for (const TriangleEdge& side : edges.between(ends)) visit(side.triangle);
     }
   });
 }

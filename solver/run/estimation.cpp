@@ -235,9 +235,9 @@ Counts Estimation::count() {
   // Few, or half as many more where no coarser one of few shows the shape.
   const std::int64_t most = is_large && !(coarse && coarse->has_few) ? most_of_own_shape : few_triangles;
   // Of a rectangle a formula knows how it is cut, but not well which pieces are alike.
-  const bool is_given = std::holds_alternative<MeshData>(problem_.domain);
   const bool has_formula = is_rectangle() && (problem_.mesh.adaptive || !is_constant(problem_.material));
-  // Each part takes as long as a triangle.
+  // Each part of a given mesh takes as long as a triangle.
+  const bool is_given = std::holds_alternative<MeshData>(problem_.domain);
   const auto cost = sizes.triangles + (is_given ? static_cast<std::int64_t>(conditions_.size()) : 0);
   if (!has_formula && cost <= std::min(most, may_be_made_)) mesh = make(problem_.mesh, most);
   if (mesh && problem_.mesh.refine == 0) mesh = stabilized(problem_, *std::move(mesh));

@@ -19,8 +19,9 @@ struct SolveSizes {
 };
 
 /// What a solve takes, in bytes, at its peaks: while it factors, and while it certifies. It takes no more,
-/// and more than half of it, but for some megabytes of tables that not every solve has. The constants are
-/// sizes of what is allocated a triangle, an unknown or a solve.
+/// and more than half of it, but for some megabytes of tables that not every solve has; thin columns on
+/// contact by the lower order take up to an eighth more. The constants are sizes of what is allocated a
+/// triangle, an unknown or a solve.
 ///
 /// The factor is that of system/dissection.hpp: of the pieces of the mesh, or of a grid of the divisions. A
 /// polygon whose mesh is still to be made counts as a square grid.

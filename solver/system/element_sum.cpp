@@ -1,6 +1,6 @@
 #include "system/element_sum.hpp"
 
-#include <algorithm>
+#include "system/alike_matrices.hpp"
 
 namespace signorini {
 
@@ -13,16 +13,11 @@ int ElementSum::keep(const double* values) {
 }
 
 int ElementSum::keep(const double* values, std::vector<int>& known) {
-  constexpr std::size_t few = 8;
-  constexpr double rounding = 1e-12;
-  const Eigen::Map<const Eigen::VectorXd> given(values, static_cast<Eigen::Index>(numbers()));
-  const auto equal = std::ranges::find_if(known, [&](int own) {
-    const Eigen::Map<const Eigen::VectorXd> other(kept(own), given.size());
-    return (given - other).lpNorm<Eigen::Infinity>() <= rounding * given.lpNorm<Eigen::Infinity>();
-  });
-  if (equal != known.end()) return *equal;
-  if (known.size() == few) known.erase(known.begin());
-  return known.emplace_back(keep(values));
+  const auto as_vector = [this](const double* first) {
+    return Eigen::Map<const Eigen::VectorXd>(first, static_cast<Eigen::Index>(numbers()));
+  };
+  return number_of_alike(
+      as_vector(values), known, [&](int own) { return as_vector(kept(own)); }, [&] { return keep(values); });
 }
 
 std::vector<double> ElementSum::diagonal() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <deque>
 #include <vector>
@@ -9,6 +8,7 @@
 
 #include "mesh/mesh.hpp"
 #include "progress/progress.hpp"
+#include "system/alike_matrices.hpp"
 
 namespace signorini {
 
@@ -42,15 +42,9 @@ struct TriangleForms {
   /// That of one of the last few among `known` that is equal but for rounding, or takes it and adds its
   /// number to them.
   int keep(const Matrix& matrix, std::vector<int>& known) {
-    constexpr std::size_t few = 8;
-    constexpr double rounding = 1e-12;
-    const auto equal = std::ranges::find_if(known, [&](int own) {
-      return (matrices[own] - matrix).lpNorm<Eigen::Infinity>() <=
-             rounding * matrix.lpNorm<Eigen::Infinity>();
-    });
-    if (equal != known.end()) return *equal;
-    if (known.size() == few) known.erase(known.begin());
-    return known.emplace_back(keep(matrix));
+    return number_of_alike(
+        matrix, known, [this](int own) -> const Matrix& { return matrices[own]; },
+        [&] { return keep(matrix); });
   }
 
   /// The first of the unknowns of a point, of an edge.
