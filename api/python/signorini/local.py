@@ -110,6 +110,7 @@ class _Runs:
                 said, errors = process.communicate(problem)
             except BaseException:
                 process.kill()
+                process.wait()  # After Ctrl-C, leaving the block does not.
                 raise
         with self.lock:
             if self.running is not None:
