@@ -100,14 +100,17 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   Totals totals(discrete.triangles());
   Owners owners(discrete.triangles());
   std::iota(owners.begin(), owners.end(), 0);
+  const bool has_quantities = !discrete.problem.quantities.empty();
+  if (has_quantities) certificate.sums.emplace(discrete.triangles());
+  PairSums* const sums = has_quantities ? &*certificate.sums : nullptr;
   LoadsBroughtBack of_patches;
   if (discrete.spaces().components == 1) {
     of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);
     totals.add<1>(discrete, laws, pair, MembraneSums(discrete, solution.stress, pair, norms), owners,
-                  progress);
+                  progress, nullptr, sums);
   } else {
     totals.add<2>(discrete, laws, pair, ElasticSums(discrete, solution, pair.v, *pair.tractions, norms),
-                  owners, progress);
+                  owners, progress, nullptr, sums);
   }
   if (totals.endless_gap) unmet.push_back(*totals.endless_gap);
   CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
@@ -126,7 +129,7 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
-  if (!discrete.problem.quantities.empty())
+  if (has_quantities)
     certificate.pair = std::make_unique<AdmissiblePair>(std::move(pair));
   return certificate;
 }

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "certify/admissible_pair.hpp"
+#include "certify/pair_sums.hpp"
 #include "fem/discretization.hpp"
 #include "progress/progress.hpp"
 #include "result/solution.hpp"
@@ -21,6 +23,7 @@ struct Certificate {
   std::vector<EdgePressure> pressure;
   /// v and σ* without patches, where the problem asks for quantities; refers to the discretization.
   std::unique_ptr<AdmissiblePair> pair;
+  std::optional<PairSums> sums;              ///< of that pair
   std::vector<EnclosedQuantity> quantities;  ///< that the problem asks for, if there is a bound
 
   bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }

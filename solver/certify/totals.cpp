@@ -19,14 +19,17 @@ bool is_zero(const ContactPressure& pressure, int i) {
 
 template <int D, typename Sums>
 void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
-                 const Owners& owners, Progress& progress, const AdmissiblePair* second) {
+                 const Owners& owners, Progress& progress, const AdmissiblePair* second,
+                 PairSums* of_all) {
   LawField<D> law(discrete.problem.material);
   const Eigen::VectorXd unbalanced = oscillations(discrete, load_remainders(discrete, owners, progress),
                                                   pair.pressure, laws, owners, progress);
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    if (owners[t] < 0) continue;
+    if (owners[t] < 0 && !of_all) continue;
     const TriangleSums own = sums(t, law, laws);
+    if (of_all) of_all->add(t, own);
+    if (owners[t] < 0) continue;
     const double o = unbalanced[t], off = o + own.rounding;
     all += own;
     all.known += off * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
@@ -65,9 +68,9 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
 }
 
 template void Totals::add<1>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, MembraneSums,
-                             const Owners&, Progress&, const AdmissiblePair*);
+                             const Owners&, Progress&, const AdmissiblePair*, PairSums*);
 template void Totals::add<2>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, ElasticSums,
-                             const Owners&, Progress&, const AdmissiblePair*);
+                             const Owners&, Progress&, const AdmissiblePair*, PairSums*);
 
 void Totals::add(const CarriedLoads& loads) {
   contact *= 1 + loads.change_of_pressure;

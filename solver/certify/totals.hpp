@@ -4,6 +4,7 @@
 #include <string>
 
 #include "certify/data/carried_loads.hpp"
+#include "certify/pair_sums.hpp"
 #include "certify/triangle_sums.hpp"
 
 namespace signorini {
@@ -16,10 +17,11 @@ struct Totals {
   explicit Totals(int triangles) : shares(Eigen::VectorXd::Zero(triangles)) {}
 
   /// Adds the triangles that have owners. `sums` are those of the pair, and of the second one if there is
-  /// one: MembraneSums or ElasticSums.
+  /// one: MembraneSums or ElasticSums. `of_all`: what all triangles are added to.
   template <int D, typename Sums>
   void add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
-           const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr);
+           const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr,
+           PairSums* of_all = nullptr);
 
   /// Adds what carries the uncertain loads, after all triangles.
   void add(const CarriedLoads& loads);

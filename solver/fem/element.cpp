@@ -69,20 +69,31 @@ LocalMatrix Element::varying_compliance(const AffineMap& map) const {
   return all;
 }
 
-LocalVector Element::strain(const Mesh& mesh, int triangle, const LocalMatrix& compliance,
-                            const LocalVector& stress) const {
+LocalVector StrainMoments::operator()(const LocalVector& stress) const {
+  if (values.rows() == 0) return compliance.lazyProduct(stress);
+  return values.transpose().lazyProduct(moduli.cwiseProduct(values.lazyProduct(stress)));
+}
+
+StrainMoments Element::strain_moments(const Mesh& mesh, int triangle, const LocalMatrix& compliance) const {
+  StrainMoments moments;
   const auto* material = std::get_if<YoungPoisson>(&problem_.material);
-  if (!material) return compliance.lazyProduct(stress);
-  const int n = spaces_.row.size();
+  if (!material) {
+    moments.compliance = compliance;
+    return moments;
+  }
   const AffineMap map(mesh.corners(triangle));
-  LocalVector moments = LocalVector::Zero(stress.size());
+  moments.values.setZero(4 * TriangleRule::size, spaces_.stresses());
+  moments.moduli.resize(4 * TriangleRule::size);
   for (int q = 0; q < TriangleRule::size; ++q) {
-    // Row i of a tensor is column i here.
-    const LocalVectors tau = map.jacobian * tau_[q];
-    const Eigen::Matrix2d sigma = tau * stress.reshaped(2, n).transpose() / map.determinant;
-    const Eigen::Vector4d strain = strain_at(*material, map(triangle_rule().points[q]), sigma.reshaped());
-    const LocalVectors moment = strain.reshaped(2, 2).transpose() * tau;
-    moments += triangle_rule().weights[q] * moment.reshaped();
+    const auto [shear, volume] = isotropic_compliance_at(*material, map(triangle_rule().points[q]));
+    const double weight = triangle_rule().weights[q] * map.determinant;
+    moments.moduli.segment<4>(4 * q) << 2 * weight * volume, 2 * weight * shear, weight * shear,
+        weight * shear;
+    for (int a = 0; a < spaces_.row.size(); ++a) {
+      const Vector tau = map.jacobian * tau_[q].col(a) / map.determinant;
+      moments.values.block<4, 2>(4 * q, 2 * a) << tau.x() / 2, tau.y() / 2, tau.x() / 2, -tau.y() / 2,
+          tau.y(), 0, 0, tau.x();
+    }
   }
   return moments;
 }

@@ -17,6 +17,18 @@ struct ElementMatrices {
   LocalMatrix skew;               ///< A = (τ_xy − τ_yx, φ_z), a row a corner; no rows for a membrane
 };
 
+/// (C σ, τ_j) for stresses in the basis of the spaces on one triangle: M σ, but with the digits that the entries
+/// of M lose where the volume is stiff.
+struct StrainMoments {
+  LocalVector operator()(const LocalVector& stress) const;
+
+  /// At the points of the rule the mean of σ_xx and σ_yy, half their difference, σ_xy and σ_yx; and what the
+  /// products of these count in the form. None of a body that is not isotropic.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4 * TriangleRule::size, kMaxLocal> values;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4 * TriangleRule::size> moduli;
+  LocalMatrix compliance;  ///< M of such a body
+};
+
 /// What the body load does to one triangle.
 struct TriangleLoad {
   LocalVector force;  ///< F = (f, v_i)
@@ -36,10 +48,8 @@ class Element {
   TriangleLoad load(const Mesh& mesh, int triangle, const Eigen::Ref<const Eigen::MatrixXd>& quadratic) const;
   LocalMatrix stress_mass(const Mesh& mesh, int triangle) const;  ///< (τ_i, τ_j)
   bool has_constant_material() const { return constant_material_; }
-  /// (C σ, τ_j) for a stress in the basis of the spaces: M σ for the compliance M, but with the digits that
-  /// the entries of M lose where the volume is stiff.
-  LocalVector strain(const Mesh& mesh, int triangle, const LocalMatrix& compliance,
-                     const LocalVector& stress) const;
+  /// `compliance`: M.
+  StrainMoments strain_moments(const Mesh& mesh, int triangle, const LocalMatrix& compliance) const;
   const Spaces& spaces() const { return spaces_; }
 
  private:

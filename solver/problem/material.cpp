@@ -34,31 +34,11 @@ Compliance extend(const Eigen::Matrix3d& mandel) {
   return symmetric.transpose() * mandel * symmetric + deviatoric * skew.transpose() * skew;
 }
 
-/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. No difference
-/// of the two moduli is taken: near ν = 1/2 it would be all that is left of the volume's.
-struct Isotropic {
-  double shear, volume;
-
-  Isotropic(const YoungPoisson& material, const Point& x) {
-    const double young = material.young(x), poisson = material.poisson(x);
-    if (!(young > 0)) refuse("/material/young", "must be positive, is not", x);
-    if (!(poisson > -1 && poisson < 0.5))
-      refuse("/material/poisson", "must lie between -1 and 1/2, does not", x);
-    shear = (1 + poisson) / young;
-    volume = material.plane == Plane::strain ? shear * (1 - 2 * poisson) : (1 - poisson) / young;
-  }
-
-  Eigen::Vector4d strain(const Eigen::Vector4d& stress) const {
-    const double mean = (stress[0] + stress[3]) / 2, difference = (stress[0] - stress[3]) / 2;
-    return {volume * mean + shear * difference, shear * stress[1], shear * stress[2],
-            volume * mean - shear * difference};
-  }
-};
-
 Compliance at(const YoungPoisson& material, const Point& x) {
-  const Isotropic isotropic(material, x);
-  Compliance compliance(4, 4);
-  for (int k = 0; k < 4; ++k) compliance.col(k) = isotropic.strain(Eigen::Vector4d::Unit(k));
+  const auto [shear, volume] = isotropic_compliance_at(material, x);
+  Compliance compliance = shear * Compliance::Identity(4, 4);
+  compliance(0, 0) = compliance(3, 3) = (volume + shear) / 2;
+  compliance(0, 3) = compliance(3, 0) = (volume - shear) / 2;
   return compliance;
 }
 
@@ -96,8 +76,14 @@ Compliance compliance_at(const Material& material, const Point& x) {
   return std::visit([&](const auto& own) { return at(own, x); }, material);
 }
 
-Eigen::Vector4d strain_at(const YoungPoisson& material, const Point& x, const Eigen::Vector4d& stress) {
-  return Isotropic(material, x).strain(stress);
+/// No difference of the two moduli is taken: near ν = 1/2 it would be all that is left of the volume's.
+IsotropicCompliance isotropic_compliance_at(const YoungPoisson& material, const Point& x) {
+  const double young = material.young(x), poisson = material.poisson(x);
+  if (!(young > 0)) refuse("/material/young", "must be positive, is not", x);
+  if (!(poisson > -1 && poisson < 0.5))
+    refuse("/material/poisson", "must lie between -1 and 1/2, does not", x);
+  const double shear = (1 + poisson) / young;
+  return {shear, material.plane == Plane::strain ? shear * (1 - 2 * poisson) : (1 - poisson) / young};
 }
 
 }  // namespace signorini

@@ -43,8 +43,13 @@ using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// C at x. Throws InvalidProblem where the stiffness is not positive definite.
 Compliance compliance_at(const Material& material, const Point& x);
 
-/// C σ at x for the entries (σ_xx, σ_xy, σ_yx, σ_yy), to rounding of its mean and of the rest: as ν → 1/2 the
+/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. As ν → 1/2 the
 /// entries of C lose the digits of the volume's strain.
-Eigen::Vector4d strain_at(const YoungPoisson& material, const Point& x, const Eigen::Vector4d& stress);
+struct IsotropicCompliance {
+  double shear, volume;
+};
+
+/// Of the material at x. Throws as compliance_at().
+IsotropicCompliance isotropic_compliance_at(const YoungPoisson& material, const Point& x);
 
 }  // namespace signorini

@@ -25,7 +25,7 @@ CondensedDual::CondensedDual(const CondensedProblem& base, const Quantity& quant
       of_balance_(stream_function_of_balance(discretization_, progress)),
       has_loads_(!quantity.has_no_loads()) {}
 
-const CondensedDual::Solved& CondensedDual::solved(const DualContact& contact, Progress& progress) {
+CondensedDual::Solved& CondensedDual::solved(const DualContact& contact, Progress& progress) {
   if (last_ && last_->clearance == contact.clearance && last_->open == contact.open) return *last_;
   last_.reset();
   const Discretization& discrete = discretization_;
@@ -38,10 +38,15 @@ const CondensedDual::Solved& CondensedDual::solved(const DualContact& contact, P
     solution.stress.setZero();
   solution.displacement = std::move(all.fields.displacement);
   solution.rotation = discrete.traces.rotation(all.coupling);
-  const Eigen::VectorXd on_rows = discrete.clearance.clearance(contact.clearance);
-  solution.summary.residuals = residuals(solution, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discrete);
   last_ = Solved{contact.clearance, contact.open, std::move(all.coupling), std::move(solution)};
   return *last_;
+}
+
+void CondensedDual::find_residuals(Solved& solved) const {
+  if (std::exchange(solved.has_residuals, true)) return;
+  const Eigen::VectorXd on_rows = discretization_.clearance.clearance(solved.clearance);
+  solved.solution.summary.residuals =
+      residuals(solved.solution, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discretization_);
 }
 
 void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progress& progress) {
@@ -54,6 +59,7 @@ void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progre
 
 CertifiedSolution DualSolution::certified(const CertifiedSolution& base, double factor, const LawOnMesh& laws,
                                           Progress& progress) const {
+  dual_.find_residuals(*solved_);
   return {discretization(),
           solved_->solution,
           dual_pair(discretization(), solved_->solution, solved_->coupling, dual_.of_balance_, base.pair,

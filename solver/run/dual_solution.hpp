@@ -23,10 +23,12 @@ class CondensedDual {
     Eigen::VectorXd clearance;
     std::vector<int> open;
     Eigen::VectorXd coupling;
-    Solution solution;
+    Solution solution;  ///< its residuals when it is certified
+    bool has_residuals = false;
   };
 
-  const Solved& solved(const DualContact& contact, Progress& progress);
+  Solved& solved(const DualContact& contact, Progress& progress);
+  void find_residuals(Solved& solved) const;
 
   const std::shared_ptr<const Operator> operator_;  ///< has the mesh
   Problem problem_;
@@ -72,7 +74,7 @@ class DualSolution {
   const CondensedProblem& base_;
   CondensedDual& dual_;
   double factor_ = 0, largest_factor_ = 0;
-  const CondensedDual::Solved* solved_ = nullptr;
+  CondensedDual::Solved* solved_ = nullptr;
 };
 
 }  // namespace signorini

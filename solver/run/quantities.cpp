@@ -125,7 +125,7 @@ void add(const std::vector<std::string>& reasons, std::vector<std::string>& all)
 /// Encloses quantities of one solution.
 class Encloser {
  public:
-  /// Takes the pair of the certificate.
+  /// Takes the pair of the certificate and its sums.
   Encloser(const CondensedProblem& condensed, const Fields& fields, const Solution& solution,
            Factorization by, Certificate& certificate, KeptDuals& kept, Progress& progress)
       : condensed_(condensed),
@@ -138,7 +138,7 @@ class Encloser {
               kOfRadius * std::min(1., std::pow(certificate.bound.relative, 2)), progress),
         base_(discrete(), solution, std::move(*certificate.pair), load_remainders(discrete(), progress),
               laws_, progress),
-        enclosure_(base_, laws_, kept.norms(condensed), progress),
+        enclosure_(base_, std::move(*certificate.sums), laws_, kept.norms(condensed), progress),
         size_(norm_of(solution.stress, discrete())) {}
 
   /// Of quantity i.

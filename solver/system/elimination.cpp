@@ -49,7 +49,6 @@ LocalVector SmallCholesky::solve(LocalVector b) const {
 Elimination::Elimination(const ElementMatrices& element, const Spaces& spaces)
     : spaces_(spaces),
       coupling_(coupling_of(element, spaces)),
-      compliance_matrix_(element.compliance),
       compliance_(element.compliance),
       lifted_(compliance_.whole().solve(spaces.divergence.transpose())),
       displacement_(LocalMatrix(spaces.divergence * lifted_)) {}
@@ -75,7 +74,7 @@ LocalFields Elimination::solve(const LocalVector& a, const LocalVector& b) const
 }
 
 LocalFields Elimination::recover(const LocalVector& coupling, const LocalVector& load,
-                                 const std::function<LocalVector(const LocalVector& stress)>& strain) const {
+                                 const StrainMoments& strain) const {
   // A translation has no stress. Without it the traces are as small as their differences, and the stress
   // keeps its digits on small triangles.
   const Translation translation(coupling, spaces_);

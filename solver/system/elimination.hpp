@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include <Eigen/Cholesky>
 
 #include "fem/element.hpp"
@@ -45,23 +43,20 @@ class Elimination {
 
   LocalMatrix stiffness() const;      ///< K
   LocalMatrix coupling_load() const;  ///< Q
-  /// The fields for given coupling and load F; `strain` answers M σ with as many digits as it can.
-  LocalFields recover(const LocalVector& coupling, const LocalVector& load,
-                      const std::function<LocalVector(const LocalVector& stress)>& strain) const;
+  /// The fields for given coupling and load F.
+  LocalFields recover(const LocalVector& coupling, const LocalVector& load, const StrainMoments& strain) const;
   /// What the fields change by if the coupling does and div σ takes up what it lacks, −F − B σ.
   LocalFields respond(const LocalVector& coupling_change, const LocalVector& lack) const;
   LocalVector force(const LocalVector& stress) const { return coupling_.lazyProduct(stress); }  ///< G σ
-  const LocalMatrix& compliance() const { return compliance_matrix_; }                          ///< M
 
  private:
   LocalFields solve(const LocalVector& a, const LocalVector& b) const;
 
   const Spaces& spaces_;
-  LocalMatrix coupling_;           ///< G
-  LocalMatrix compliance_matrix_;  ///< M
-  SmallCholesky compliance_;       ///< M
-  LocalMatrix lifted_;             ///< M⁻¹ Bᵀ
-  SmallCholesky displacement_;     ///< W
+  LocalMatrix coupling_;        ///< G
+  SmallCholesky compliance_;    ///< M
+  LocalMatrix lifted_;          ///< M⁻¹ Bᵀ
+  SmallCholesky displacement_;  ///< W
 };
 
 /// The same with the displacement as data and the augmented compliance M_r = M + r Bᵀ V⁻¹ B (the form of

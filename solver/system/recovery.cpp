@@ -24,15 +24,19 @@ Recovered recover(const Discretization& discrete, const Eigen::VectorXd& x, Prog
   Recovered all{Eigen::MatrixXd(discrete.spaces().stresses(), discrete.triangles()),
                 Eigen::MatrixXd(discrete.spaces().displacements(), discrete.triangles()),
                 discrete.coupling_load};
-  PerShape<Elimination> eliminations(discrete);
+  struct Shape {
+    Elimination elimination;
+    StrainMoments strain;
+  };
+  PerShape<Shape> shapes(discrete);
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress.check_in(t);
-    const Elimination& elimination = eliminations(
-        t, [&](const ElementMatrices& matrices) { return Elimination(matrices, discrete.spaces()); });
+    const Shape& shape = shapes(t, [&](const ElementMatrices& matrices) -> Shape {
+      return {Elimination(matrices, discrete.spaces()),
+              discrete.element.strain_moments(discrete.mesh, t, matrices.compliance)};
+    });
     const LocalFields local =
-        elimination.recover(traces.values(t, x), discrete.load.col(t), [&](const LocalVector& stress) {
-          return discrete.element.strain(discrete.mesh, t, elimination.compliance(), stress);
-        });
+        shape.elimination.recover(traces.values(t, x), discrete.load.col(t), shape.strain);
     all.stress.col(t) = local.stress;
     all.displacement.col(t) = local.displacement;
     subtract_forces(traces, t, local.force, all.imbalance);

@@ -62,21 +62,27 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMer
                                    const Quadratic<2>& displacement, const Inner& inner,
                                    TriangleSums& sums) const {
   if (!has_load_) return;
-  const bool lifted = is_lifted(terms_, t);
   const ProjectedLoad load = load_on(terms_, t);
   const Quadratic<2> quadratic = load.projection;
-  double work = 0, rest_square = 0;
-  for (int q = 0; q < rule.size(); ++q) {
-    const JohnsonMercierRule::Values& at = rule.values[q];
-    const double weight = rule.places[q].weight * map.determinant;
-    Eigen::Vector2d rest = inner.reshaped(2, JohnsonMercierRule::kInner) *
-                           rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
-    if (lifted) {
+  const auto at_inner = inner.reshaped(2, JohnsonMercierRule::kInner);
+  const InnerMass& mass = inner_mass();
+  double work = map.determinant * quadratic
+                                      .cwiseProduct(displacement * quadratic_mass() +
+                                                    at_inner * mass.with_quadratic.transpose())
+                                      .sum();
+  double rest_square = 0;
+  if (is_lifted(terms_, t)) {
+    for (int q = 0; q < rule.size(); ++q) {
+      const double weight = rule.places[q].weight * map.determinant;
+      Eigen::Vector2d lift = Eigen::Vector2d::Zero();
       Tensor<2> slope = Tensor<2>::Zero();
-      add_lifts<2>(terms_, t, rule.places[q].point, map.jacobian.inverse(), rest, slope);
+      add_lifts<2>(terms_, t, rule.places[q].point, map.jacobian.inverse(), lift, slope);
+      work += weight * (quadratic * rule.values[q].basis).dot(lift);
+      lift += at_inner * rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
+      rest_square += weight * lift.squaredNorm();
     }
-    work += weight * (quadratic * at.basis).dot(displacement * at.basis + rest);
-    rest_square += weight * rest.squaredNorm();
+  } else {
+    rest_square = map.determinant * (at_inner * mass.inner).cwiseProduct(at_inner).sum();
   }
   sums.energy -= work;
   sums.energy_slack +=

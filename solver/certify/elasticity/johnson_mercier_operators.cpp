@@ -97,6 +97,19 @@ const JohnsonMercierRule& johnson_mercier_rule(const Spaces& spaces, int degree)
                       : johnson_mercier_rule_of_degree<30>(spaces.order);
 }
 
+const InnerMass& inner_mass() {
+  static const InnerMass mass = [] {
+    InnerMass sum{decltype(sum.with_quadratic)::Zero(), decltype(sum.inner)::Zero()};
+    for (const JohnsonMercier::Place& place : JohnsonMercier::places(rule_of_degree(6))) {
+      const Eigen::Vector<double, kInner> inner = place.displacement_basis.tail<kInner>();
+      sum.with_quadratic += place.weight * quadratic_basis(place.point) * inner.transpose();
+      sum.inner += place.weight * inner * inner.transpose();
+    }
+    return sum;
+  }();
+  return mass;
+}
+
 void JohnsonMercierRule::evaluate(const Spaces& spaces) {
   const JohnsonMercier& element = johnson_mercier();
   values.resize(places.size());

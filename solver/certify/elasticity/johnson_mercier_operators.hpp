@@ -41,6 +41,14 @@ struct JohnsonMercierRule {
   void evaluate(const Spaces& spaces);
 };
 
+/// Integrals over the reference triangle of the functions at the inner nodes, times those of P2 on the triangle
+/// and times each other.
+struct InnerMass {
+  Eigen::Matrix<double, 6, JohnsonMercierRule::kInner> with_quadratic;
+  Eigen::Matrix<double, JohnsonMercierRule::kInner, JohnsonMercierRule::kInner> inner;
+};
+const InnerMass& inner_mass();
+
 /// The rule of a degree of 6, 10, 18 or 30 for one of the two pairs of spaces, made once.
 const JohnsonMercierRule& johnson_mercier_rule(const Spaces& spaces, int degree);
 

@@ -33,7 +33,7 @@ double square_of_bubble(const Mesh& mesh, int edge) {
 }  // namespace
 
 template <int D>
-QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& terms) const {
+PairSums QuantityEnclosure::sums_of(const std::vector<Term>& terms) const {
   using FieldSums = std::conditional_t<D == 1, MembraneSums, ElasticSums>;
   std::vector<typename FieldSums::Term> all;
   for (const Term& term : terms) {
@@ -47,32 +47,26 @@ QuantityEnclosure::Sums QuantityEnclosure::sums_of(const std::vector<Term>& term
   const Discretization& discrete = base_.discrete;
   FieldSums fields(discrete, std::move(all), norms_);
   LawField<D> law(discrete.problem.material);
-  Sums sums{Eigen::VectorXd(discrete.triangles())};
+  PairSums sums(discrete.triangles());
   for (int t = 0; t < discrete.triangles(); ++t) {
     progress_.check_in(t);
-    const TriangleSums own = fields(t, law, laws_);
-    sums.gaps[t] = std::pow(own.norm_of_gap(), 2);
-    sums.gap += own.gap;
-    sums.strain += own.strain;
-    sums.energy += own.energy;
-    sums.slack += own.slack + own.rounding * (2 * std::sqrt(own.gap) + own.rounding);
-    sums.energy_slack += own.energy_slack;
+    sums.add(t, fields(t, law, laws_));
   }
   return sums;
 }
 
-QuantityEnclosure::Sums QuantityEnclosure::sums(const std::vector<Term>& terms) const {
+PairSums QuantityEnclosure::sums(const std::vector<Term>& terms) const {
   return base_.discrete.spaces().components == 1 ? sums_of<1>(terms) : sums_of<2>(terms);
 }
 
-QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, ShapeNorms& norms,
-                                     Progress& progress)
+QuantityEnclosure::QuantityEnclosure(const CertifiedSolution& base, PairSums sums, const LawOnMesh& laws,
+                                     ShapeNorms& norms, Progress& progress)
     : base_(base),
       laws_(laws),
       norms_(norms),
       progress_(progress),
       everywhere_(base.discrete.triangles(), 0),
-      own_(sums({{1, base}})),
+      own_(std::move(sums)),
       contact_(contact_work(base.pair.pressure)) {
   const double gap = norm_with(own_.gaps, base.oscillations) + base.carried();
   const double contact = std::max(0., contact_.value + contact_.radius) * (1 + base.loads.change_of_pressure);
@@ -134,7 +128,7 @@ double QuantityEnclosure::largest_rest(double x, double factor) const {
 /// are more than those of both alone.
 QuantityEnclosure::Bounds QuantityEnclosure::operator()(const CertifiedSolution& dual, double z) const {
   const Discretization &discrete = base_.discrete, &loads = dual.discrete;
-  const Sums way = sums({{1, dual}}), end = sums({{1, base_}, {z, dual}});
+  const PairSums way = sums({{1, dual}}), end = sums({{1, base_}, {z, dual}});
   const double square = z * z;
   // z (q, v) − z J'(v) η.
   Known sum{own_.energy + square * way.energy - end.energy,

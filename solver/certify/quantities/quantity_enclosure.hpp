@@ -1,6 +1,7 @@
 #pragma once
 
 #include "certify/data/law_pieces.hpp"
+#include "certify/pair_sums.hpp"
 #include "certify/quantities/certified_solution.hpp"
 #include "problem/quantity.hpp"
 
@@ -11,8 +12,8 @@ class ShapeNorms;
 /// Encloses quantities of a solution by the solutions of their dual problems: THEORY.md, Theorem 4.
 class QuantityEnclosure {
  public:
-  /// All must outlive it.
-  QuantityEnclosure(const CertifiedSolution& base, const LawOnMesh& laws, ShapeNorms& norms,
+  /// `sums`: of the base. All else must outlive it.
+  QuantityEnclosure(const CertifiedSolution& base, PairSums sums, const LawOnMesh& laws, ShapeNorms& norms,
                     Progress& progress);
 
   /// R of THEORY.md, Theorem 1: twice a bound of ‖σ − ½ (σ* + E ε(v))‖_C.
@@ -30,14 +31,6 @@ class QuantityEnclosure {
   Bounds operator()(const CertifiedSolution& dual, double size) const;
 
  private:
-  /// Of the fields that several pairs add up to.
-  struct Sums {
-    Eigen::VectorXd gaps;  ///< ‖C σ* − ε(v)‖²_E by triangles, from above
-    double gap = 0;
-    double strain = 0, energy = 0;  ///< as in TriangleSums
-    double slack = 0, energy_slack = 0;
-  };
-
   /// A value and what it may be off by.
   struct Known {
     double value = 0, radius = 0;
@@ -58,8 +51,8 @@ class QuantityEnclosure {
   };
 
   template <int D>
-  Sums sums_of(const std::vector<Term>& terms) const;
-  Sums sums(const std::vector<Term>& terms) const;
+  PairSums sums_of(const std::vector<Term>& terms) const;
+  PairSums sums(const std::vector<Term>& terms) const;
   Known work_of_traction(const Discretization& loads, const AdmissibleDisplacement& v) const;
   Known contact_work(const ContactPressure& pressure) const;
   double beyond_base(const CertifiedSolution& dual) const;
@@ -70,7 +63,7 @@ class QuantityEnclosure {
   ShapeNorms& norms_;
   Progress& progress_;
   const std::vector<int> everywhere_;  ///< all triangles have an owner
-  Sums own_;
+  const PairSums own_;
   Known contact_;
   double radius_;
 };
