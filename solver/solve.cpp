@@ -123,6 +123,7 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   if (problem.operator_key.empty()) cache = nullptr;
   auto used = cache ? cache->find(problem.operator_key) : nullptr;
   const bool keeps = cache && !used;
+  if (used) used = on_loan(std::move(used), MadeBy::another);
   Solution solution;
   std::shared_ptr<const Mesh> mesh;
   std::unique_ptr<const Discretization> discretization;
@@ -132,7 +133,8 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
                                       : CondensedProblem(problem, mesh, settings.factorization, progress);
     used = condensed.used_operator();
-    if (keeps) cache->keep(problem.operator_key, used);
+    if (keeps && cache->keep(problem.operator_key, used))
+      used = on_loan(std::move(used), MadeBy::this_solve);
     if (!settings.entries_alone) solution = condensed.solve(settings, progress);
     mesh = used->shared_mesh();
     discretization = condensed.take_discretization();

@@ -1,5 +1,7 @@
 #include "server/jobs/kept_operators.hpp"
 
+#include "progress/memory_meter.hpp"
+
 namespace signorini::server {
 
 /// FNV-1a.
@@ -22,12 +24,14 @@ std::shared_ptr<const Operator> KeptOperators::find(const std::string& key) {
   return found->second->kept;
 }
 
-void KeptOperators::keep(const std::string& key, std::shared_ptr<const Operator> made) {
+bool KeptOperators::keep(const std::string& key, std::shared_ptr<const Operator> made) {
   const std::size_t bytes = made->bytes() + key.size();
-  if (bytes > limit_bytes_) return;
+  if (bytes > limit_bytes_) return false;
+  // Neither the key and its entry nor what is dropped for them are the solve's.
+  const Unmetered cache;
   Entries dropped;  // their memory is freed after the lock is
   const std::lock_guard lock(mutex_);
-  if (by_key_.contains(key)) return;  // another worker made it at the same time
+  if (by_key_.contains(key)) return false;  // another worker made it at the same time
   entries_.push_front({key, std::move(made), bytes});
   by_key_.emplace(entries_.front().key, entries_.begin());
   figures_.bytes += bytes;
@@ -37,6 +41,7 @@ void KeptOperators::keep(const std::string& key, std::shared_ptr<const Operator>
     by_key_.erase(entries_.back().key);
     dropped.splice(dropped.begin(), entries_, std::prev(entries_.end()));
   }
+  return true;
 }
 
 OperatorFigures KeptOperators::figures() const {

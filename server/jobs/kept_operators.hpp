@@ -32,7 +32,7 @@ class KeptOperators : public OperatorCache {
   explicit KeptOperators(std::size_t limit_bytes) : limit_bytes_(limit_bytes) {}
 
   std::shared_ptr<const Operator> find(const std::string& key) override;
-  void keep(const std::string& key, std::shared_ptr<const Operator> made) override;
+  bool keep(const std::string& key, std::shared_ptr<const Operator> made) override;
 
   OperatorFigures figures() const;
 

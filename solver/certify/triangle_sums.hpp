@@ -79,7 +79,7 @@ class MembraneSums {
 
   const Discretization& discrete_;
   std::vector<Term> terms_;
-  bool is_balanced_;                        ///< σ_h by itself, on all triangles
+  std::vector<std::size_t> not_balanced_;   ///< terms whose σ_h is not by itself, on all triangles
   ShapeNorms* norms_ = nullptr;             ///< of a patch none
   const AdmissiblePair* second_ = nullptr;  ///< against that of the only term
   const Eigen::MatrixXd* change_ = nullptr;

@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "progress/memory_meter.hpp"
 #include "system/dense_cholesky.hpp"
 #include "system/factorize.hpp"
 
@@ -38,6 +39,18 @@ Operator::Operator(std::shared_ptr<const Mesh> mesh, const ClearanceSpace& space
 std::size_t Operator::bytes() const {
   return sizeof(Operator) + factor_.bytes() + static_cast<std::size_t>(weight_.size()) * sizeof(double) +
          mesh_->bytes();
+}
+
+std::shared_ptr<const Operator> on_loan(std::shared_ptr<const Operator> kept, MadeBy made_by) {
+  const Operator* const lent = kept.get();
+  return {lent, [kept = std::move(kept), made_by](const Operator*) mutable {
+            const std::size_t bytes = kept->bytes();
+            {
+              const Unmetered others;
+              kept.reset();
+            }
+            if (made_by == MadeBy::this_solve) hand_over(bytes);
+          }};
 }
 
 }  // namespace signorini

@@ -45,7 +45,13 @@ class OperatorCache {
 
   /// The operator kept under the key, or null.
   virtual std::shared_ptr<const Operator> find(const std::string& key) = 0;
-  virtual void keep(const std::string& key, std::shared_ptr<const Operator> made) = 0;
+  /// False if it is not kept. What is forgotten on the way is freed unmetered.
+  virtual bool keep(const std::string& key, std::shared_ptr<const Operator> made) = 0;
 };
+
+/// An operator of a cache in the hands of a solve, which meters its memory: what it lets go of is not freed
+/// but left to the cache, or freed in its place. That of one which the solve has made is the solve's until then.
+enum class MadeBy { this_solve, another };
+std::shared_ptr<const Operator> on_loan(std::shared_ptr<const Operator> kept, MadeBy made_by);
 
 }  // namespace signorini

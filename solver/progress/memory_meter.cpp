@@ -36,6 +36,16 @@ std::int64_t MemoryMeter::peak() const {
   return account.peak - start_;
 }
 
+Unmetered::Unmetered() : before_(account.now) {}
+
+Unmetered::~Unmetered() {
+  account.now = before_;
+}
+
+void hand_over(std::size_t bytes) {
+  account.now -= static_cast<std::int64_t>(bytes);
+}
+
 MemoryLimit::MemoryLimit(double bytes) {
   constexpr double as_good_as_none = 1e18;
   if (bytes < as_good_as_none) account.limit = account.now + static_cast<std::int64_t>(bytes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace signorini {
@@ -23,6 +24,23 @@ class MemoryMeter {
  private:
   std::int64_t start_, peak_around_;
 };
+
+/// While it lives, the meters of this thread take no note of what it allocates and frees: it is of no solve.
+class Unmetered {
+ public:
+  Unmetered();
+  ~Unmetered();
+
+  Unmetered(const Unmetered&) = delete;
+  Unmetered& operator=(const Unmetered&) = delete;
+
+ private:
+  std::int64_t before_;
+};
+
+/// Takes so many bytes off the meters of this thread, which has allocated them: they are somebody else's now,
+/// who frees them unmetered.
+void hand_over(std::size_t bytes);
 
 /// While it lives, what this thread allocates beyond so many bytes more than it has now fails:
 /// std::bad_alloc.

@@ -28,7 +28,7 @@ json block(int divisions = 4) {
 
 struct NoCache : OperatorCache {
   std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-  void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+  bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
 };
 
 /// Both say the same; answers what.

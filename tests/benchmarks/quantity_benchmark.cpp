@@ -51,13 +51,16 @@ const Settings exactly{ActiveSet{}, {}};
 
 struct NoCache : OperatorCache {
   std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-  void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+  bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
 };
 
 /// Shows the operator of a solve.
 struct Last : NoCache {
   std::shared_ptr<const Operator> last;
-  void keep(const std::string&, std::shared_ptr<const Operator> own) override { last = std::move(own); }
+  bool keep(const std::string&, std::shared_ptr<const Operator> own) override {
+    last = std::move(own);
+    return true;
+  }
 };
 
 /// The solve with the intervals of every answer, over the one without: they are found once more, with what the

@@ -16,9 +16,10 @@ class Shelf : public OperatorCache {
     const auto found = kept_.find(key);
     return found == kept_.end() ? nullptr : found->second;
   }
-  void keep(const std::string& key, std::shared_ptr<const Operator> made) override {
+  bool keep(const std::string& key, std::shared_ptr<const Operator> made) override {
     const std::lock_guard lock(mutex_);
     kept_[key] = std::move(made);
+    return true;
   }
   std::size_t size() const { return kept_.size(); }
 

@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "../problems/sanitized.hpp"
 #include "api/problem/problem_json.hpp"
 #include "server/jobs/run.hpp"
 
@@ -66,6 +67,24 @@ TEST(KeptOperators, NeverHoldMoreThanTheLimit) {
     EXPECT_EQ(operators.figures().operators, 0u);
     EXPECT_EQ(operators.figures().bytes, 0u);
   }
+}
+
+/// Neither what is dropped for its factor nor the factor of another counts.
+TEST(KeptOperators, AreOfNoSolvesMemory) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const auto peak = [](KeptOperators& operators, int n) {
+    Observer indifferent;
+    return static_cast<double>(solve_request(request(n), indifferent, operators).summary.peak_memory_bytes);
+  };
+  KeptOperators none(0);
+  peak(none, 20);  // tables of the process
+  const double alone = peak(none, 20);
+  KeptOperators one(bytes_of(40) + 1);
+  peak(one, 40);
+  EXPECT_NEAR(peak(one, 20) / alone, 1, 0.02);
+  EXPECT_EQ(one.figures().evictions, 1u);
+  EXPECT_LT(peak(one, 20), alone);
+  EXPECT_GT(peak(one, 20), 0.4 * alone);
 }
 
 TEST(KeptOperators, ServeWorkersWhileTheyAreDropped) {

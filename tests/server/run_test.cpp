@@ -26,7 +26,7 @@ Solution solve_alone(const api::Request& request, Observer& observer) {
   class Nowhere : public OperatorCache {
    public:
     std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-    void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+    bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
   } nowhere;
   return solve_request(request, observer, nowhere);
 }

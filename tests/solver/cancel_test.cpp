@@ -91,7 +91,7 @@ Run solves(const Problem& problem, const Settings& settings = {}, const std::vec
     class Nowhere : public OperatorCache {
      public:
       std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-      void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+      bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
     } nowhere;
     solve(problem, sweep, settings, observer, nowhere);
   };

@@ -93,7 +93,7 @@ TEST(FarGap, InASweep) {
     const std::vector<double> gaps{1e-5, 1e9, 1e-5};
     struct NoCache : OperatorCache {
       std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-      void keep(const std::string&, std::shared_ptr<const Operator>) override {}
+      bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
     } cache;
     Observer observer;
     const Solution solution = solve(problem, sweep, {ActiveSet{}, {}}, observer, cache);

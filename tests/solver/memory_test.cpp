@@ -593,6 +593,30 @@ TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
   EXPECT_NEAR(estimate(problem, sweep, {}, settings).problem.seconds, 3 * estimate(problem).seconds, 1e-12);
 }
 
+/// The factor of the problem is the cache's by then.
+TEST_P(Memory, OfASweepOfConstantMaterialsIsThatOfOneAtATime) {
+  for (const int n : {20, 40}) {
+    Problem problem = elastic(GetParam(), n, n);
+    problem.operator_key = "the problem";
+    std::vector<Variation> sweep(2, {"", problem.body, problem.boundary, "same"});
+    for (std::size_t i = 0; i < sweep.size(); ++i) {
+      const double young = 4. + static_cast<double>(i);
+      sweep[i].material =
+          std::make_shared<const Material>(YoungPoisson{Field(young), Field(0.3), Plane::strain});
+      sweep[i].material_key = std::to_string(young);
+    }
+    problems::Shelf shelf;
+    Observer indifferent;
+    const Settings settings{ActiveSet{}, std::nullopt};
+    const Solution solution = solve(problem, sweep, settings, indifferent, shelf);
+    EXPECT_EQ(shelf.size(), 1u);
+    const double predicted = estimate(problem, sweep, {}, settings).problem.memory_bytes;
+    const auto peak = static_cast<double>(solution.summary.peak_memory_bytes);
+    EXPECT_LE(peak, predicted) << n;
+    EXPECT_GE(peak + tables, predicted / 2) << n;
+  }
+}
+
 /// One after another, beside the solution of the problem itself; the largest is not the last.
 TEST_P(Memory, OfAStudyIsThatOfItsLargestRun) {
   const auto expect = [&](const Problem& problem, const std::vector<MeshRequest>& meshes) {

@@ -56,7 +56,7 @@ MembraneSums::MembraneSums(const Discretization& discrete, const Eigen::MatrixXd
 MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms, ShapeNorms& norms)
     : MembraneSums(discrete, std::move(terms)) {
   norms_ = &norms;
-  if (!is_balanced_) norms.look_over(discrete);
+  if (!not_balanced_.empty()) norms.look_over(discrete);
 }
 
 MembraneSums::MembraneSums(const PatchPairs& pairs)
@@ -67,17 +67,16 @@ MembraneSums::MembraneSums(const PatchPairs& pairs)
 }
 
 MembraneSums::MembraneSums(const Discretization& discrete, std::vector<Term> terms)
-    : discrete_(discrete),
-      terms_(std::move(terms)),
-      is_balanced_(std::ranges::none_of(
-          terms_, [](const Term& term) { return QuadraticBalance(term.discrete).is_needed(); })) {}
+    : discrete_(discrete), terms_(std::move(terms)) {
+  for (std::size_t i = 0; i < terms_.size(); ++i)
+    if (QuadraticBalance(terms_[i].discrete).is_needed()) not_balanced_.push_back(i);
+}
 
 std::optional<QuadraticBalance::Data> MembraneSums::balance_on(int t) const {
   std::optional<Balance> sum;
-  if (is_balanced_) return sum;
-  for (const Term& term : terms_) {
-    const auto own = QuadraticBalance(term.discrete)(t);
-    if (own) sum = sum.value_or(Balance::Zero()) + term.factor * *own;
+  for (const std::size_t i : not_balanced_) {
+    const auto own = QuadraticBalance(terms_[i].discrete)(t);
+    if (own) sum = sum.value_or(Balance::Zero()) + terms_[i].factor * *own;
   }
   return sum;
 }
@@ -97,10 +96,15 @@ Quadratic<1> MembraneSums::stream_function_on(int t) const {
 /// Where nothing is lifted.
 TriangleSums MembraneSums::by_norms(int t, const MembraneNorms& norms, const Balance& balance) const {
   using Column = MembraneNorms::Column;
-  const Column stress = norms.stress.lazyProduct(stress_on(t)),
-               correction = norms.stream_function.lazyProduct(stream_function_on(t).transpose()) +
-                            norms.balance.lazyProduct(balance),
-               strain = norms.strain.lazyProduct(displacement_on<1>(terms_, t).transpose()),
+  constexpr int fluxes = QuadraticBalance::kFluxes;
+  const Column stress = norms.stress.lazyProduct(stress_on(t));
+  Column correction = norms.stream_function.lazyProduct(stream_function_on(t).transpose());
+  correction += norms.balance.rightCols<Balance::RowsAtCompileTime - fluxes>().lazyProduct(
+      balance.tail<Balance::RowsAtCompileTime - fluxes>());
+  // On most triangles there are none.
+  if (!balance.head<fluxes>().isZero(0))
+    correction += norms.balance.leftCols<fluxes>().lazyProduct(balance.head<fluxes>());
+  const Column strain = norms.strain.lazyProduct(displacement_on<1>(terms_, t).transpose()),
                direct_gap = stress - strain;
   TriangleSums sums;
   sums.gap = (direct_gap + correction).squaredNorm();
