@@ -107,27 +107,42 @@ class ElasticSums {
   TriangleSums operator()(int t, LawField<2>& law, const LawOnMesh& laws);
 
  private:
-  using Given = JohnsonMercierOperators<1>::Given;
+  using Given = JohnsonMercierFields<1>::Given;
 
   using Inner = Eigen::Matrix<double, 2 * JohnsonMercierRule::kInner, 1>;
 
-  /// Sums that were found along with those of an earlier triangle.
+  /// What is found of a triangle, maybe along with an earlier one.
   struct Found {
     int triangle = -1;
     TriangleSums sums;
     Inner inner = Inner::Zero();
+    /// Where something is lifted: (Πf, it), and the square of what v is beside v_h.
+    double work_on_lifts = 0, rest_square = 0;
   };
+
+  /// By the points of a rule; empty if nothing is lifted.
+  struct Lifted {
+    std::vector<Eigen::Vector2d> values;
+    std::vector<Eigen::Vector3d> strains;
+  };
+  struct OnRule {
+    const JohnsonMercierRule& rule;
+    std::vector<SymmetricLaw> laws;
+    Lifted lifted;
+    JohnsonMercierFields<1>::Values values;
+  };
+
   /// So many triangles are looked at for others of the same shape.
   static constexpr int kAhead = 128;
 
   Given given_on(int t, const AffineMap& map) const;
   const Found& by_norms(int t, const JohnsonMercierNorms& norms);
-  TriangleSums by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
-                         double error_of_whole, LawField<2>& law, Inner& inner) const;
-  std::vector<Eigen::Vector3d> lifted_strains(int t, const AffineMap& map,
-                                              const JohnsonMercierRule& rule) const;
-  void add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
-                        const Quadratic<2>& displacement, const Inner& inner, TriangleSums& sums) const;
+  Found by_points(int t, const AffineMap& map, std::span<const LawPiece> pieces, int of_fields,
+                  LawField<2>& law, const LawOnMesh& laws);
+  void add_points(int t, const AffineMap& map, const OnRule& on, double error_of_whole, Found& found) const;
+  Lifted lifted_on(int t, const AffineMap& map, const JohnsonMercierRule& rule) const;
+  void add_work_of_load(int t, const AffineMap& map, const Quadratic<2>& displacement, const Found& found,
+                        TriangleSums& sums) const;
   void add_rest_of_lifts(int t, const AffineMap& map, const LawPiece& law, TriangleSums& sums) const;
 
   const Discretization& discrete_;
@@ -136,7 +151,7 @@ class ElasticSums {
   bool needs_all_ = false;
   ShapeNorms& norms_;
   std::array<Found, kAhead> found_;    ///< that of a triangle by its number's rest
-  JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: kept, for it is large
+  JohnsonMercierRule rule_of_pieces_;  ///< of the last triangle that was cut: its room is used again
 };
 
 }  // namespace signorini

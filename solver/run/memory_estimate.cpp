@@ -194,7 +194,7 @@ double tables_of_jumps(const Spaces& spaces) {
 /// pieces. As measured.
 double tables(const Problem& problem, const Spaces& spaces) {
   const bool is_membrane = spaces.components == 1;
-  const double of_shapes = 8e5, of_patches = 3e6, of_points = 60e6;
+  const double of_shapes = 8e5, of_patches = 3e6, of_points = 4e6;
   return of_shapes + (is_uniform(problem.body) ? 0 : tables_of_jumps(spaces)) +
          (is_membrane && spaces.order == 1 ? of_patches : 0) +
          (is_membrane || is_constant(problem.material) ? 0 : of_points);

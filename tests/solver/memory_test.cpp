@@ -41,7 +41,7 @@ Problem in_polygon(Problem problem, double size) {
 
 /// Tables that not every solve makes, for loads that jump, pressures that change and shapes that come up
 /// often; and for a triangle of an elastic body on which the law needs many pieces.
-constexpr double tables = 4e6, tables_of_laws = 60e6;
+constexpr double tables = 4e6, tables_of_laws = 4e6;
 
 void expect_bound(const Problem& problem, const Settings& settings = {ActiveSet{}, std::nullopt},
                   double not_made = tables) {

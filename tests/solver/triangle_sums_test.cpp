@@ -388,22 +388,21 @@ class ElasticFields {
     const JohnsonMercierRule& rule = johnson_mercier_rule(made_.discretization.spaces(), 30);
     const AffineMap map(mesh().corners(t));
     const Eigen::Matrix2d inverse = map.jacobian.inverse();
-    JohnsonMercierOperators<1>::Given given{johnson_mercier_data(made_.discretization, tractions_, t, map),
-                                            made_.solution.stress.col(t),
-                                            v_.on<2>(t).reshaped(),
-                                            {}};
+    JohnsonMercierFields<1> on_element(map, {johnson_mercier_data(made_.discretization, tractions_, t, map),
+                                             made_.solution.stress.col(t), v_.on<2>(t).reshaped()});
+    std::vector<Eigen::Vector3d> lifted;
     std::vector<Eigen::Vector2d> values;
     for (int q = 0; q < rule.size(); ++q) {
       const Point& x = rule.places[q].point;
       Eigen::Vector2d value = v_.on<2>(t) * quadratic_basis(x);
       Tensor<2> slope = Tensor<2>::Zero();
       v_.add_lifts<2>(t, x, inverse, value, slope);
-      given.lifted.push_back(mandel(slope));
+      lifted.push_back(mandel(slope));
       values.push_back(value);
     }
     LawField<2> law(made_.problem.material);
     const std::vector<SymmetricLaw> laws = laws_at(made_.discretization, rule, map, law);
-    const JohnsonMercierOperators<1> fields(rule, map, given, laws);
+    const JohnsonMercierOperators<1> fields(rule, map, minimized(on_element, rule, lifted, laws), laws);
     TriangleSums sums;
     for (int q = 0; q < rule.size(); ++q) {
       const JohnsonMercier::Place& place = rule.places[q];
@@ -411,7 +410,7 @@ class ElasticFields {
       const auto& own = laws[laws.size() == 1 ? 0 : q];
       // In the norm of E, as the rows of the fields are.
       Eigen::Vector3d z = Eigen::Vector3d::Zero();
-      Eigen::Vector2d value = values[q] + fields.inner.reshaped(2, JohnsonMercierRule::kInner) *
+      Eigen::Vector2d value = values[q] + on_element.inner().reshaped(2, JohnsonMercierRule::kInner) *
                                               place.displacement_basis.tail<JohnsonMercierRule::kInner>();
       if (rest) {
         const Eigen::Matrix<double, Eigen::Dynamic, 2> slope = rest->gradient(place.point);

@@ -34,8 +34,7 @@ ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
   Given sum{JohnsonMercierData::Zero(),
             LocalVector::Zero(terms_[0].stress.rows()),
-            displacement_on<2>(terms_, t).reshaped(),
-            {}};
+            displacement_on<2>(terms_, t).reshaped()};
   for (const Term& term : terms_) {
     sum.data += term.factor * johnson_mercier_data(term.discrete, term.tractions, t, map);
     sum.stress += term.factor * term.stress.col(t);
@@ -43,48 +42,37 @@ ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
   return sum;
 }
 
-/// The strains of what is lifted into the triangle.
-std::vector<Eigen::Vector3d> ElasticSums::lifted_strains(int t, const AffineMap& map,
-                                                         const JohnsonMercierRule& rule) const {
-  std::vector<Eigen::Vector3d> strains;
+/// What is lifted into the triangle, at the points of a rule: values, and strains.
+ElasticSums::Lifted ElasticSums::lifted_on(int t, const AffineMap& map, const JohnsonMercierRule& rule) const {
+  Lifted lifted;
+  if (!is_lifted(terms_, t)) return lifted;
   for (const JohnsonMercier::Place& place : rule.places) {
     Eigen::Vector2d value = Eigen::Vector2d::Zero();
     Tensor<2> slope = Tensor<2>::Zero();
     add_lifts<2>(terms_, t, place.point, map.jacobian.inverse(), value, slope);
-    strains.push_back(mandel(slope));
+    lifted.values.push_back(value);
+    lifted.strains.push_back(mandel(slope));
   }
-  return strains;
+  return lifted;
 }
 
 /// (Πf, v), and what (f − Πf, v) is at most: f − Πf is orthogonal to v_h, where that is quadratic, and does
 /// no more work on the rest of v than the product of their norms.
-void ElasticSums::add_work_of_load(int t, const AffineMap& map, const JohnsonMercierRule& rule,
-                                   const Quadratic<2>& displacement, const Inner& inner,
-                                   TriangleSums& sums) const {
+void ElasticSums::add_work_of_load(int t, const AffineMap& map, const Quadratic<2>& displacement,
+                                   const Found& found, TriangleSums& sums) const {
   if (!has_load_) return;
   const ProjectedLoad load = load_on(terms_, t);
   const Quadratic<2> quadratic = load.projection;
-  const auto at_inner = inner.reshaped(2, JohnsonMercierRule::kInner);
+  const auto at_inner = found.inner.reshaped(2, JohnsonMercierRule::kInner);
   const InnerMass& mass = inner_mass();
-  double work = map.determinant * quadratic
-                                      .cwiseProduct(displacement * quadratic_mass() +
-                                                    at_inner * mass.with_quadratic.transpose())
-                                      .sum();
-  double rest_square = 0;
-  if (is_lifted(terms_, t)) {
-    for (int q = 0; q < rule.size(); ++q) {
-      const double weight = rule.places[q].weight * map.determinant;
-      Eigen::Vector2d lift = Eigen::Vector2d::Zero();
-      Tensor<2> slope = Tensor<2>::Zero();
-      add_lifts<2>(terms_, t, rule.places[q].point, map.jacobian.inverse(), lift, slope);
-      work += weight * (quadratic * rule.values[q].basis).dot(lift);
-      lift += at_inner * rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
-      rest_square += weight * lift.squaredNorm();
-    }
-  } else {
-    rest_square = map.determinant * (at_inner * mass.inner).cwiseProduct(at_inner).sum();
-  }
-  sums.energy -= work;
+  const double work = map.determinant * quadratic
+                                            .cwiseProduct(displacement * quadratic_mass() +
+                                                          at_inner * mass.with_quadratic.transpose())
+                                            .sum();
+  const double rest_square = is_lifted(terms_, t)
+                                 ? found.rest_square
+                                 : map.determinant * (at_inner * mass.inner).cwiseProduct(at_inner).sum();
+  sums.energy -= work + found.work_on_lifts;
   sums.energy_slack +=
       load.rest * std::sqrt(rest_square) + load.uncertain_work * bound_of_quadratic(displacement);
 }
@@ -147,17 +135,20 @@ const ElasticSums::Found& ElasticSums::by_norms(int t, const JohnsonMercierNorms
   return place(t);
 }
 
-TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRule& rule, const Given& given,
-                                    double error_of_whole, LawField<2>& law, Inner& inner) const {
-  const JohnsonMercierOperators<1> values(rule, map, given, laws_at(discrete_, rule, map, law));
-  inner = values.inner;
-  TriangleSums sums;
-  sums.gap = values.gap.squaredNorm();
-  sums.direct_gap = values.direct_gap.squaredNorm();
-  sums.correction = values.correction.squaredNorm();
-  sums.skew = values.skew.squaredNorm();
-  sums.stress = values.stress.squaredNorm();
-  sums.strain = sums.energy = values.strain.squaredNorm() / 2;
+/// What the points of a rule add, when the fields are found. `error_of_whole`: of a rule for the whole triangle.
+void ElasticSums::add_points(int t, const AffineMap& map, const OnRule& on, double error_of_whole,
+                             Found& found) const {
+  const JohnsonMercierRule& rule = on.rule;
+  const JohnsonMercierOperators<1> values(rule, map, on.values, on.laws);
+  TriangleSums& sums = found.sums;
+  sums.gap += values.gap.squaredNorm();
+  sums.direct_gap += values.direct_gap.squaredNorm();
+  sums.correction += values.correction.squaredNorm();
+  sums.skew += values.skew.squaredNorm();
+  sums.stress += values.stress.squaredNorm();
+  const double strain = values.strain.squaredNorm() / 2;
+  sums.strain += strain;
+  sums.energy += strain;
   // What the law has beyond a polynomial counts twice, in the integral and in the rule.
   for (int q = 0; q < rule.size(); ++q) {
     const double error = rule.errors.empty() ? error_of_whole : rule.errors[q];
@@ -167,31 +158,65 @@ TriangleSums ElasticSums::by_points(const AffineMap& map, const JohnsonMercierRu
                    3 * values.correction.middleRows<3>(3 * q).squaredNorm() + of_strain);
     sums.energy_slack += error * of_strain;
   }
-  return sums;
+  if (on.lifted.values.empty() || !has_load_) return;
+  const Quadratic<2> load = load_on(terms_, t).projection;
+  for (int q = 0; q < rule.size(); ++q) {
+    const double weight = rule.places[q].weight * map.determinant;
+    const Eigen::Vector2d& lift = on.lifted.values[q];
+    const Eigen::Vector2d rest =
+        lift + found.inner.reshaped(2, JohnsonMercierRule::kInner) *
+                   rule.places[q].displacement_basis.tail<JohnsonMercierRule::kInner>();
+    found.work_on_lifts += weight * (load * rule.values[q].basis).dot(lift);
+    found.rest_square += weight * rest.squaredNorm();
+  }
+}
+
+/// By a rule for the whole triangle, or by those of its pieces: of many, by one after the other, and twice, for
+/// all their points together may take tens of megabytes.
+ElasticSums::Found ElasticSums::by_points(int t, const AffineMap& map, std::span<const LawPiece> pieces,
+                                          int of_fields, LawField<2>& law, const LawOnMesh& laws) {
+  const Spaces& spaces = discrete_.spaces();
+  const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
+  const double error_of_whole = laws.whole(t).error_of_rule(degree, of_fields);
+  JohnsonMercierFields<1> fields(map, given_on(t, map));
+  const auto on = [&](const JohnsonMercierRule& rule) -> OnRule {
+    return {rule, laws_at(discrete_, rule, map, law), lifted_on(t, map, rule), {}};
+  };
+  const auto fill = [&](std::span<const LawPiece> from) {
+    return rule_of_pieces_.fill(spaces, from, of_fields, laws.tolerance());
+  };
+  Found found;
+  if (pieces.empty() || fill(pieces) == pieces.size()) {
+    OnRule only = on(pieces.empty() ? johnson_mercier_rule(spaces, degree) : rule_of_pieces_);
+    only.values = minimized(fields, only.rule, only.lifted.strains, only.laws);
+    found.inner = fields.inner();
+    add_points(t, map, only, error_of_whole, found);
+    return found;
+  }
+  const auto for_each_rule = [&](const auto& step) {
+    for (std::span<const LawPiece> rest = pieces; !rest.empty();) {
+      rest = rest.subspan(fill(rest));
+      OnRule part = on(rule_of_pieces_);
+      part.values = fields.on(part.rule, part.lifted.strains);
+      step(part);
+    }
+  };
+  for_each_rule([&](const OnRule& part) { fields.add(part.rule, part.laws, part.values); });
+  fields.minimize();
+  found.inner = fields.inner();
+  for_each_rule([&](const OnRule& part) { add_points(t, map, part, error_of_whole, found); });
+  return found;
 }
 
 TriangleSums ElasticSums::operator()(int t, LawField<2>& law, const LawOnMesh& laws) {
   const AffineMap map(discrete_.mesh.corners(t));
   const bool lifted = is_lifted(terms_, t), constant_law = discrete_.element.has_constant_material();
-  const int of_fields = degree_of_fields(lifted);
-  const int degree = laws.whole(t).degree_of_rule(of_fields, laws.tolerance());
-  const std::vector<LawPiece> pieces = laws.cut(t);
-  if (!pieces.empty()) rule_of_pieces_.fill(discrete_.spaces(), pieces, of_fields, laws.tolerance());
-  const JohnsonMercierRule& rule =
-      pieces.empty() ? johnson_mercier_rule(discrete_.spaces(), degree) : rule_of_pieces_;
-  Inner inner = Inner::Zero();
-  TriangleSums sums;
-  if (const auto* norms = lifted || !constant_law ? nullptr : norms_.elastic(map, discrete_.spaces(), law)) {
-    const Found& found = by_norms(t, *norms);
-    sums = found.sums;
-    inner = found.inner;
-  } else {
-    Given given = given_on(t, map);
-    if (lifted) given.lifted = lifted_strains(t, map, rule);
-    sums = by_points(map, rule, given, laws.whole(t).error_of_rule(degree, of_fields), law, inner);
-  }
+  const auto* norms = lifted || !constant_law ? nullptr : norms_.elastic(map, discrete_.spaces(), law);
+  const Found found =
+      norms ? by_norms(t, *norms) : by_points(t, map, laws.cut(t), degree_of_fields(lifted), law, laws);
+  TriangleSums sums = found.sums;
   const Quadratic<2> displacement = displacement_on<2>(terms_, t);
-  add_work_of_load(t, map, rule, displacement, inner, sums);
+  add_work_of_load(t, map, displacement, found, sums);
   add_rest_of_lifts(t, map, laws.whole(t), sums);
   sums.add_rounding(map, laws.whole(t), bound_of_quadratic(displacement));
   return sums;

@@ -57,24 +57,21 @@ JohnsonMercierRule::JohnsonMercierRule(const Spaces& spaces, int degree)
   evaluate(spaces);
 }
 
-void JohnsonMercierRule::fill(const Spaces& spaces, const std::vector<LawPiece>& pieces, int of_fields,
-                              double tolerance) {
-  const auto places_of = [&](const LawPiece& piece) {
-    const int degree = piece.degree_of_rule(of_fields, tolerance);
-    return JohnsonMercier::places(rule_of_degree(degree), piece.place.corners);
-  };
-  // They may be tens of megabytes, of which a growing vector would have three times as many.
-  std::size_t points = 0;
-  for (const LawPiece& piece : pieces) points += places_of(piece).size();
-  if (points > places.capacity()) *this = JohnsonMercierRule();
+std::size_t JohnsonMercierRule::fill(const Spaces& spaces, std::span<const LawPiece> pieces, int of_fields,
+                                     double tolerance) {
+  constexpr std::size_t enough = 1500;
   places.clear();
-  places.reserve(points);
   errors.clear();
-  for (const LawPiece& piece : pieces) {
-    std::ranges::copy(places_of(piece), std::back_inserter(places));
-    errors.resize(places.size(), piece.error_of_rule(piece.degree_of_rule(of_fields, tolerance), of_fields));
+  std::size_t taken = 0;
+  while (taken < pieces.size() && places.size() < enough) {
+    const LawPiece& piece = pieces[taken++];
+    const int degree = piece.degree_of_rule(of_fields, tolerance);
+    std::ranges::copy(JohnsonMercier::places(rule_of_degree(degree), piece.place.corners),
+                      std::back_inserter(places));
+    errors.resize(places.size(), piece.error_of_rule(degree, of_fields));
   }
   evaluate(spaces);
+  return taken;
 }
 
 namespace {
@@ -147,39 +144,64 @@ std::vector<SymmetricLaw> laws_at(const Discretization& discrete, const JohnsonM
 }
 
 template <int Columns>
-JohnsonMercierStress<Columns>::JohnsonMercierStress(const JohnsonMercierRule& rule, const AffineMap& map,
+JohnsonMercierStress<Columns>::JohnsonMercierStress(const AffineMap& map,
                                                     const Block<JohnsonMercier::kData>& data,
-                                                    const Block<Eigen::Dynamic>& coefficients,
-                                                    std::span<const SymmetricLaw> laws)
-    : admissible(rule.size(), Block<3>::Zero(3, data.cols())),
-      discrete(admissible),
-      skew(rule.size(), data.cols()) {
-  const Eigen::Matrix3d to_triangle = piola(map);
-  const Block<JohnsonMercier::kStresses> with_data = johnson_mercier().from_data * data;
-  constexpr int kFree = JohnsonMercier::kFree;
-  Eigen::Matrix<double, kFree, kFree> free_matrix = decltype(free_matrix)::Zero();
-  Block<kFree> free_right = Block<kFree>::Zero(kFree, data.cols());
+                                                    const Block<Eigen::Dynamic>& coefficients)
+    : map_(map),
+      to_triangle_(piola(map)),
+      with_data_(johnson_mercier().from_data * data),
+      coefficients_(coefficients),
+      right_(Block<kFree>::Zero(kFree, data.cols())),
+      free_(right_) {}
+
+template <int Columns>
+auto JohnsonMercierStress<Columns>::on(const JohnsonMercierRule& rule) const -> Values {
+  const Eigen::Index columns = with_data_.cols();
+  Values values;
+  values.admissible.resize(rule.size(), Block<3>::Zero(3, columns));
+  values.discrete = values.admissible;
+  values.skew.resize(rule.size(), columns);
   for (int q = 0; q < rule.size(); ++q) {
-    const JohnsonMercierRule::Values& at = rule.values[q];
-    const auto of_stress = stresses(map, at.stress);
-    discrete[q].noalias() = of_stress.template topRows<3>() * coefficients;
-    skew.row(q).noalias() = of_stress.row(3) * coefficients;
-    for (Eigen::Index k = 0; k < data.cols(); ++k)
-      admissible[q].col(k).noalias() = to_triangle * JohnsonMercier::stress(rule.places[q], with_data.col(k));
-    const Eigen::Matrix<double, 3, kFree> own = to_triangle * at.free;
+    const auto of_stress = stresses(map_, rule.values[q].stress);
+    values.discrete[q].noalias() = of_stress.template topRows<3>() * coefficients_;
+    values.skew.row(q).noalias() = of_stress.row(3) * coefficients_;
+    for (Eigen::Index k = 0; k < columns; ++k)
+      values.admissible[q].col(k).noalias() =
+          to_triangle_ * JohnsonMercier::stress(rule.places[q], with_data_.col(k));
+  }
+  update(rule, values);
+  return values;
+}
+
+template <int Columns>
+void JohnsonMercierStress<Columns>::update(const JohnsonMercierRule& rule, Values& values) const {
+  if (!is_nearest_ || std::exchange(values.are_nearest, true)) return;
+  for (int q = 0; q < rule.size(); ++q)
+    values.admissible[q] += free_at(rule, q) * free_;
+}
+
+template <int Columns>
+void JohnsonMercierStress<Columns>::add(const JohnsonMercierRule& rule, std::span<const SymmetricLaw> laws,
+                                        const Values& values) {
+  for (int q = 0; q < rule.size(); ++q) {
+    const Eigen::Matrix<double, 3, kFree> own = free_at(rule, q);
     const Eigen::Matrix<double, kFree, 3> weighted =
         rule.places[q].weight * own.transpose() * law_at(laws, q).compliance;
-    free_matrix += weighted * own;
-    free_right += weighted * (discrete[q] - admissible[q]);
+    matrix_ += weighted * own;
+    right_ += weighted * (values.discrete[q] - values.admissible[q]);
   }
-  const Block<kFree> free = solve_definite(free_matrix, free_right);
-  for (int q = 0; q < rule.size(); ++q) admissible[q] += (to_triangle * rule.values[q].free).eval() * free;
+}
+
+template <int Columns>
+void JohnsonMercierStress<Columns>::minimize() {
+  free_ = solve_definite(matrix_, right_);
+  is_nearest_ = true;
 }
 
 template <int Columns>
 Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,
                                                           const AffineMap& map,
-                                                          const JohnsonMercierStress<Columns>& stress,
+                                                          const typename JohnsonMercierStress<Columns>::Values& stress,
                                                           std::span<const SymmetricLaw> laws) {
   Eigen::Matrix<double, Eigen::Dynamic, Columns> rows(3 * rule.size(), stress.skew.cols());
   for (int q = 0; q < rule.size(); ++q)
@@ -189,60 +211,118 @@ Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRu
   return rows;
 }
 
-template <int Columns>
-JohnsonMercierOperators<Columns>::JohnsonMercierOperators(const JohnsonMercierRule& rule,
-                                                          const AffineMap& map, const Given& given,
-                                                          std::span<const SymmetricLaw> laws) {
-  const int points = rule.size();
-  const Eigen::Index columns = given.data.cols();
+namespace {
+
+/// Of the inner nodes, at a point of a rule.
+Eigen::Matrix<double, 3, 2 * kInner> inner_strains(const AffineMap& map, const JohnsonMercier::Place& place) {
   const Eigen::Matrix2d to_gradients = map.jacobian.inverse().transpose();
-  const auto weight = [&](int q) { return rule.places[q].weight * map.determinant; };
-  const JohnsonMercierStress<Columns> sigma(rule, map, given.data, given.stress, laws);
+  return strains<kInner>(to_gradients * place.displacement_gradients.rightCols<kInner>());
+}
 
-  // v is v_h and what brings its strain nearest to C σ*.
-  std::vector<Block<3>> strains_of_v(points, Block<3>::Zero(3, columns));
-  Eigen::Matrix<double, 2 * kInner, 2 * kInner> inner_matrix = decltype(inner_matrix)::Zero();
-  Block<2 * kInner> inner_right = Block<2 * kInner>::Zero(2 * kInner, columns);
-  for (int q = 0; q < points; ++q) {
-    const JohnsonMercierRule::Values& at = rule.values[q];
-    strains_of_v[q].noalias() = strains<6>(to_gradients * at.gradients) * given.displacement;
-    if (!given.lifted.empty()) strains_of_v[q].colwise() += given.lifted[q];
-    const auto own =
-        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>());
-    const SymmetricLaw& law = law_at(laws, q);
-    const Eigen::Matrix<double, 2 * kInner, 3> weighted = weight(q) * own.transpose() * law.stiffness;
-    inner_matrix += weighted * own;
-    inner_right += weighted * (law.compliance * sigma.admissible[q] - strains_of_v[q]);
+}  // namespace
+
+template <int Columns>
+JohnsonMercierFields<Columns>::JohnsonMercierFields(const AffineMap& map, const Given& given)
+    : map_(map),
+      stress_(map, given.data, given.stress),
+      displacement_(given.displacement),
+      right_(Block<2 * kInner>::Zero(2 * kInner, given.data.cols())),
+      inner_(right_) {}
+
+template <int Columns>
+auto JohnsonMercierFields<Columns>::on(const JohnsonMercierRule& rule,
+                                       std::span<const Eigen::Vector3d> lifted) const -> Values {
+  const Eigen::Matrix2d to_gradients = map_.jacobian.inverse().transpose();
+  Values values;
+  values.stress = stress_.on(rule);
+  values.strain.resize(rule.size(), Block<3>::Zero(3, displacement_.cols()));
+  for (int q = 0; q < rule.size(); ++q) {
+    values.strain[q].noalias() = strains<6>(to_gradients * rule.values[q].gradients) * displacement_;
+    if (!lifted.empty()) values.strain[q].colwise() += lifted[q];
   }
-  inner = solve_definite(inner_matrix, inner_right);
+  update(rule, values);
+  return values;
+}
 
+template <int Columns>
+void JohnsonMercierFields<Columns>::update(const JohnsonMercierRule& rule, Values& values) const {
+  stress_.update(rule, values.stress);
+  if (!has_inner_ || std::exchange(values.has_inner, true)) return;
+  for (int q = 0; q < rule.size(); ++q) values.strain[q] += inner_strains(map_, rule.places[q]) * inner_;
+}
+
+template <int Columns>
+void JohnsonMercierFields<Columns>::add(const JohnsonMercierRule& rule, std::span<const SymmetricLaw> laws,
+                                        const Values& values) {
+  stress_.add(rule, laws, values.stress);
+  for (int q = 0; q < rule.size(); ++q) {
+    const auto own = inner_strains(map_, rule.places[q]);
+    const SymmetricLaw& law = law_at(laws, q);
+    const Eigen::Matrix<double, 2 * kInner, 3> weighted =
+        rule.places[q].weight * map_.determinant * own.transpose() * law.stiffness;
+    matrix_ += weighted * own;
+    right_ += weighted * (law.compliance * values.stress.admissible[q] - values.strain[q]);
+    of_free_ += weighted * (law.compliance * stress_.free_at(rule, q));
+  }
+}
+
+template <int Columns>
+void JohnsonMercierFields<Columns>::minimize() {
+  stress_.minimize();
+  inner_ = solve_definite(matrix_, Block<2 * kInner>(right_ + of_free_ * stress_.free()));
+  has_inner_ = true;
+}
+
+template <int Columns>
+JohnsonMercierOperators<Columns>::JohnsonMercierOperators(
+    const JohnsonMercierRule& rule, const AffineMap& map,
+    const typename JohnsonMercierFields<Columns>::Values& values, std::span<const SymmetricLaw> laws) {
+  const int points = rule.size();
+  const Eigen::Index columns = values.stress.skew.cols();
   gap.resize(3 * points, columns);
   direct_gap.resize(3 * points, columns);
   strain.resize(3 * points, columns);
-  correction = signorini::correction(rule, map, sigma, laws);
+  correction = signorini::correction<Columns>(rule, map, values.stress, laws);
   skew.resize(points, columns);
   stress.resize(4 * points, columns);
   for (int q = 0; q < points; ++q) {
     const SymmetricLaw& own = law_at(laws, q);
-    const double root = std::sqrt(weight(q)), of_skew = root * std::sqrt(own.skew_compliance);
+    const double root = std::sqrt(rule.places[q].weight * map.determinant),
+                 of_skew = root * std::sqrt(own.skew_compliance);
     const auto factor = own.factor.template triangularView<Eigen::Lower>();
-    const Block<3> all =
-        strains_of_v[q] +
-        strains<kInner>(to_gradients * rule.places[q].displacement_gradients.rightCols<kInner>()) * inner;
+    const Block<3>& all = values.strain[q];
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
-    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.admissible[q] - all);
-    direct_gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * sigma.discrete[q] - all);
-    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * sigma.discrete[q];
-    skew.row(q) = stress.row(4 * q + 3) = of_skew * sigma.skew.row(q);
+    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * values.stress.admissible[q] - all);
+    direct_gap.template middleRows<3>(3 * q) =
+        root * factor.solve(own.compliance * values.stress.discrete[q] - all);
+    stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * values.stress.discrete[q];
+    skew.row(q) = stress.row(4 * q + 3) = of_skew * values.stress.skew.row(q);
   }
 }
 
-template struct JohnsonMercierStress<Eigen::Dynamic>;
-template Eigen::MatrixXd correction(const JohnsonMercierRule&, const AffineMap&,
-                                    const JohnsonMercierStress<Eigen::Dynamic>&,
-                                    std::span<const SymmetricLaw>);
+template <int Columns>
+typename JohnsonMercierFields<Columns>::Values minimized(JohnsonMercierFields<Columns>& fields,
+                                                         const JohnsonMercierRule& rule,
+                                                         std::span<const Eigen::Vector3d> lifted,
+                                                         std::span<const SymmetricLaw> laws) {
+  auto values = fields.on(rule, lifted);
+  fields.add(rule, laws, values);
+  fields.minimize();
+  fields.update(rule, values);
+  return values;
+}
+
+template class JohnsonMercierStress<Eigen::Dynamic>;
+template Eigen::MatrixXd correction<Eigen::Dynamic>(const JohnsonMercierRule&, const AffineMap&,
+                                                    const JohnsonMercierStress<Eigen::Dynamic>::Values&,
+                                                    std::span<const SymmetricLaw>);
+template class JohnsonMercierFields<1>;
+template class JohnsonMercierFields<Eigen::Dynamic>;
 template struct JohnsonMercierOperators<1>;
 template struct JohnsonMercierOperators<Eigen::Dynamic>;
+template JohnsonMercierFields<1>::Values minimized<1>(JohnsonMercierFields<1>&, const JohnsonMercierRule&,
+                                                      std::span<const Eigen::Vector3d>,
+                                                      std::span<const SymmetricLaw>);
 
 JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const AffineMap& map,
                                          const SymmetricLaw& law) {
@@ -250,17 +330,17 @@ JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const A
   const Eigen::Index functions = 2 * rule.values.front().stress.cols();
   const Eigen::MatrixXd unit =
       Eigen::MatrixXd::Identity(data + functions + displacement, data + functions + displacement);
-  const JohnsonMercierOperators<Eigen::Dynamic> values(
-      rule, map,
-      {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>(), {}},
-      std::span(&law, 1));
+  JohnsonMercierFields<Eigen::Dynamic> fields(
+      map, {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>()});
+  const std::span<const SymmetricLaw> laws(&law, 1);
+  const JohnsonMercierOperators<Eigen::Dynamic> values(rule, map, minimized(fields, rule, {}, laws), laws);
   gap = triangular_factor(values.gap);
   direct_gap = triangular_factor(values.direct_gap);
   strain = triangular_factor(values.strain);
   correction = triangular_factor(values.correction.leftCols(data + functions));
   skew = triangular_factor(values.skew.middleCols(data, functions));
   stress = triangular_factor(values.stress.middleCols(data, functions));
-  inner = values.inner;
+  inner = fields.inner();
 }
 
 }  // namespace signorini
