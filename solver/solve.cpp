@@ -96,6 +96,7 @@ class SweepOver {
     if (observer_.sees_entries()) show = [&](const Solution& own) { observer_.entry(number, own); };
     SweepEntry entry;
     try {
+      progress.check();  // of thousands that come too late none begins
       entry = entries_.solve(variation, progress, show);
     } catch (const SolveError& failure) {
       entry.error = failure.what();
@@ -133,8 +134,7 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
     CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
                                       : CondensedProblem(problem, mesh, settings.factorization, progress);
     used = condensed.used_operator();
-    if (keeps && cache->keep(problem.operator_key, used))
-      used = on_loan(std::move(used), MadeBy::this_solve);
+    if (keeps && cache->keep(problem.operator_key, used)) used = on_loan(std::move(used), MadeBy::this_solve);
     if (!settings.entries_alone) solution = condensed.solve(settings, progress);
     mesh = used->shared_mesh();
     discretization = condensed.take_discretization();

@@ -12,6 +12,10 @@ namespace {
 /// A list of solves, as long as it is without a word.
 constexpr std::size_t longest_short_body = std::size_t{256} * 1024;
 
+/// A compressed body becomes so many bytes, and so many times as long as it was sent: text becomes ten times
+/// as long, numbers hardly five, and five kilobytes of zeros megabytes that take half a second to be read.
+constexpr std::size_t unpacked_of_any = std::size_t{64} * 1024, most_times_packed = 100;
+
 /// A shorter body fits into one packet as it is.
 constexpr std::size_t shortest_compressed_body = 1024;
 
@@ -42,6 +46,13 @@ std::optional<api::Coding> known(const std::vector<std::string>& codings) {
   const std::optional<api::Coding> coding = coding_of(codings.front());
   if (codings.size() > 1 || !coding) throw unknown_coding();
   return coding;
+}
+
+HttpError unpacks_to_too_much() {
+  return {413,
+          {"body-too-large", "Body too large",
+           "The body becomes more than " + std::to_string(most_times_packed) +
+               " times as long when it is decoded: send it without Content-Encoding."}};
 }
 
 HttpError broken_body() {
@@ -98,12 +109,13 @@ std::string decoded(std::string body, const std::vector<std::string>& codings, s
   if (body.size() > max_bytes) throw body_too_large(max_bytes);
   const std::optional<api::Coding> coding = known(codings);
   if (!coding) return body;
+  const std::size_t longest = std::min(max_bytes, unpacked_of_any + most_times_packed * body.size());
   std::string text;
-  switch (api::inflate(body, *coding, max_bytes, text)) {
+  switch (api::inflate(body, *coding, longest, text)) {
     case api::Inflation::whole:
       return text;
     case api::Inflation::too_long:
-      throw body_too_large(max_bytes);
+      throw longest < max_bytes ? unpacks_to_too_much() : body_too_large(max_bytes);
     case api::Inflation::broken:
       break;
   }

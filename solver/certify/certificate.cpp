@@ -129,8 +129,7 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   certificate.pressure = pressure_where(owners, discrete, pair.pressure);
   certificate.bound.unmet = std::move(unmet);
   certificate.bound.guaranteed = certificate.bound.unmet.empty();
-  if (has_quantities)
-    certificate.pair = std::make_unique<AdmissiblePair>(std::move(pair));
+  if (has_quantities) certificate.pair = std::make_unique<AdmissiblePair>(std::move(pair));
   return certificate;
 }
 

@@ -19,8 +19,7 @@ bool is_zero(const ContactPressure& pressure, int i) {
 
 template <int D, typename Sums>
 void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
-                 const Owners& owners, Progress& progress, const AdmissiblePair* second,
-                 PairSums* of_all) {
+                 const Owners& owners, Progress& progress, const AdmissiblePair* second, PairSums* of_all) {
   LawField<D> law(discrete.problem.material);
   const Eigen::VectorXd unbalanced = oscillations(discrete, load_remainders(discrete, owners, progress),
                                                   pair.pressure, laws, owners, progress);

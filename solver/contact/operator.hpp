@@ -50,7 +50,8 @@ class OperatorCache {
 };
 
 /// An operator of a cache in the hands of a solve, which meters its memory: what it lets go of is not freed
-/// but left to the cache, or freed in its place. That of one which the solve has made is the solve's until then.
+/// but left to the cache, or freed in its place. That of one which the solve has made is the solve's until
+/// then.
 enum class MadeBy { this_solve, another };
 std::shared_ptr<const Operator> on_loan(std::shared_ptr<const Operator> kept, MadeBy made_by);
 

@@ -17,14 +17,15 @@ struct ElementMatrices {
   LocalMatrix skew;               ///< A = (τ_xy − τ_yx, φ_z), a row a corner; no rows for a membrane
 };
 
-/// (C σ, τ_j) for stresses in the basis of the spaces on one triangle: M σ, but with the digits that the entries
-/// of M lose where the volume is stiff.
+/// (C σ, τ_j) for stresses in the basis of the spaces on one triangle: M σ, but with the digits that the
+/// entries of M lose where the volume is stiff.
 struct StrainMoments {
   LocalVector operator()(const LocalVector& stress) const;
 
   /// At the points of the rule the mean of σ_xx and σ_yy, half their difference, σ_xy and σ_yx; and what the
   /// products of these count in the form. None of a body that is not isotropic.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4 * TriangleRule::size, kMaxLocal> values;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 4 * TriangleRule::size, kMaxLocal>
+      values;
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4 * TriangleRule::size> moduli;
   LocalMatrix compliance;  ///< M of such a body
 };

@@ -43,8 +43,8 @@ using Compliance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// C at x. Throws InvalidProblem where the stiffness is not positive definite.
 Compliance compliance_at(const Material& material, const Point& x);
 
-/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. As ν → 1/2 the
-/// entries of C lose the digits of the volume's strain.
+/// C σ = shear (σ − ½ tr σ I) + volume ½ tr σ I, which is as true of a σ that is not symmetric. As ν → 1/2
+/// the entries of C lose the digits of the volume's strain.
 struct IsotropicCompliance {
   double shear, volume;
 };

@@ -60,7 +60,7 @@ class Progress {
  private:
   /// The phase certify may go on a little beyond the limit: hardly any time is needed for the bound of a
   /// small problem whose iteration the limit ended.
-  static constexpr double kForBound = 0.2;
+  static constexpr double kForBound = 0.15;
 
   bool in_time() const { return time_left().value_or(1) > 0; }
 

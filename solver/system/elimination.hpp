@@ -44,7 +44,8 @@ class Elimination {
   LocalMatrix stiffness() const;      ///< K
   LocalMatrix coupling_load() const;  ///< Q
   /// The fields for given coupling and load F.
-  LocalFields recover(const LocalVector& coupling, const LocalVector& load, const StrainMoments& strain) const;
+  LocalFields recover(const LocalVector& coupling, const LocalVector& load,
+                      const StrainMoments& strain) const;
   /// What the fields change by if the coupling does and div σ takes up what it lacks, −F − B σ.
   LocalFields respond(const LocalVector& coupling_change, const LocalVector& lack) const;
   LocalVector force(const LocalVector& stress) const { return coupling_.lazyProduct(stress); }  ///< G σ

@@ -63,8 +63,8 @@ struct Last : NoCache {
   }
 };
 
-/// The solve with the intervals of every answer, over the one without: they are found once more, with what the
-/// solve has at hand for them, the discretization and how the factorisation cut the mesh.
+/// The solve with the intervals of every answer, over the one without: they are found once more, with what
+/// the solve has at hand for them, the discretization and how the factorisation cut the mesh.
 void standard_intervals(benchmark::State& state, Problem (*make)(Scheme, int), Scheme scheme) {
   Problem problem = make(scheme, static_cast<int>(state.range(0)));
   problem.operator_key = "the only one";

@@ -101,8 +101,9 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
     const AffineMap map(solved.solution.mesh.corners(t));
     const JohnsonMercierRule& rule = johnson_mercier_rule(solved.discretization.spaces(), 10);
     const std::vector<SymmetricLaw> laws = laws_at(solved.discretization, rule, map, law);
-    JohnsonMercierFields<1> fields(map, {johnson_mercier_data(solved.discretization, tractions, t, map),
-                                         solved.solution.stress.col(t), Eigen::Matrix<double, 12, 1>::Zero()});
+    JohnsonMercierFields<1> fields(
+        map, {johnson_mercier_data(solved.discretization, tractions, t, map), solved.solution.stress.col(t),
+              Eigen::Matrix<double, 12, 1>::Zero()});
     const auto values = minimized(fields, rule, {}, laws);
     sum += JohnsonMercierOperators<1>(rule, map, values, laws).correction.squaredNorm();
   }

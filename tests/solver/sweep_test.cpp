@@ -464,5 +464,16 @@ TEST(Sweep, TheTimeLimitIsForTheWhole) {
   EXPECT_NE(solution.sweep.back().error.find("the time limit of "), std::string::npos);
 }
 
+/// Of thousands of entries, whose discretizations alone would take a hundred times as long as the limit.
+TEST(Sweep, EntriesBehindTheTimeLimitAreNotBegun) {
+  const Problem problem = problems::hanging_block(Scheme::conforming, sanitized ? 20 : 60);
+  std::vector<Variation> sweep(2000, data_of(problem, ""));
+  const auto begin = std::chrono::steady_clock::now();
+  const Solution solution = solve_sweep(problem, sweep, {ActiveSet{}, 0.3});
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  EXPECT_NE(solution.sweep.back().error.find("the time limit of "), std::string::npos);
+  EXPECT_LT(taken.count(), 3);
+}
+
 }  // namespace
 }  // namespace signorini::sweep_test

@@ -32,8 +32,7 @@ ElasticSums::ElasticSums(const Discretization& discrete, std::vector<Term> terms
 }
 
 ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
-  Given sum{JohnsonMercierData::Zero(),
-            LocalVector::Zero(terms_[0].stress.rows()),
+  Given sum{JohnsonMercierData::Zero(), LocalVector::Zero(terms_[0].stress.rows()),
             displacement_on<2>(terms_, t).reshaped()};
   for (const Term& term : terms_) {
     sum.data += term.factor * johnson_mercier_data(term.discrete, term.tractions, t, map);
@@ -43,7 +42,8 @@ ElasticSums::Given ElasticSums::given_on(int t, const AffineMap& map) const {
 }
 
 /// What is lifted into the triangle, at the points of a rule: values, and strains.
-ElasticSums::Lifted ElasticSums::lifted_on(int t, const AffineMap& map, const JohnsonMercierRule& rule) const {
+ElasticSums::Lifted ElasticSums::lifted_on(int t, const AffineMap& map,
+                                           const JohnsonMercierRule& rule) const {
   Lifted lifted;
   if (!is_lifted(terms_, t)) return lifted;
   for (const JohnsonMercier::Place& place : rule.places) {
@@ -65,10 +65,10 @@ void ElasticSums::add_work_of_load(int t, const AffineMap& map, const Quadratic<
   const Quadratic<2> quadratic = load.projection;
   const auto at_inner = found.inner.reshaped(2, JohnsonMercierRule::kInner);
   const InnerMass& mass = inner_mass();
-  const double work = map.determinant * quadratic
-                                            .cwiseProduct(displacement * quadratic_mass() +
-                                                          at_inner * mass.with_quadratic.transpose())
-                                            .sum();
+  const double work =
+      map.determinant *
+      quadratic.cwiseProduct(displacement * quadratic_mass() + at_inner * mass.with_quadratic.transpose())
+          .sum();
   const double rest_square = is_lifted(terms_, t)
                                  ? found.rest_square
                                  : map.determinant * (at_inner * mass.inner).cwiseProduct(at_inner).sum();
@@ -135,7 +135,8 @@ const ElasticSums::Found& ElasticSums::by_norms(int t, const JohnsonMercierNorms
   return place(t);
 }
 
-/// What the points of a rule add, when the fields are found. `error_of_whole`: of a rule for the whole triangle.
+/// What the points of a rule add, when the fields are found. `error_of_whole`: of a rule for the whole
+/// triangle.
 void ElasticSums::add_points(int t, const AffineMap& map, const OnRule& on, double error_of_whole,
                              Found& found) const {
   const JohnsonMercierRule& rule = on.rule;
@@ -171,8 +172,8 @@ void ElasticSums::add_points(int t, const AffineMap& map, const OnRule& on, doub
   }
 }
 
-/// By a rule for the whole triangle, or by those of its pieces: of many, by one after the other, and twice, for
-/// all their points together may take tens of megabytes.
+/// By a rule for the whole triangle, or by those of its pieces: of many, by one after the other, and twice,
+/// for all their points together may take tens of megabytes.
 ElasticSums::Found ElasticSums::by_points(int t, const AffineMap& map, std::span<const LawPiece> pieces,
                                           int of_fields, LawField<2>& law, const LawOnMesh& laws) {
   const Spaces& spaces = discrete_.spaces();

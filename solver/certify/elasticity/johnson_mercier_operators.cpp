@@ -176,8 +176,7 @@ auto JohnsonMercierStress<Columns>::on(const JohnsonMercierRule& rule) const -> 
 template <int Columns>
 void JohnsonMercierStress<Columns>::update(const JohnsonMercierRule& rule, Values& values) const {
   if (!is_nearest_ || std::exchange(values.are_nearest, true)) return;
-  for (int q = 0; q < rule.size(); ++q)
-    values.admissible[q] += free_at(rule, q) * free_;
+  for (int q = 0; q < rule.size(); ++q) values.admissible[q] += free_at(rule, q) * free_;
 }
 
 template <int Columns>
@@ -199,10 +198,9 @@ void JohnsonMercierStress<Columns>::minimize() {
 }
 
 template <int Columns>
-Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,
-                                                          const AffineMap& map,
-                                                          const typename JohnsonMercierStress<Columns>::Values& stress,
-                                                          std::span<const SymmetricLaw> laws) {
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(
+    const JohnsonMercierRule& rule, const AffineMap& map,
+    const typename JohnsonMercierStress<Columns>::Values& stress, std::span<const SymmetricLaw> laws) {
   Eigen::Matrix<double, Eigen::Dynamic, Columns> rows(3 * rule.size(), stress.skew.cols());
   for (int q = 0; q < rule.size(); ++q)
     rows.template middleRows<3>(3 * q) = std::sqrt(rule.places[q].weight * map.determinant) *
@@ -292,7 +290,8 @@ JohnsonMercierOperators<Columns>::JohnsonMercierOperators(
     const auto factor = own.factor.template triangularView<Eigen::Lower>();
     const Block<3>& all = values.strain[q];
     strain.template middleRows<3>(3 * q) = root * factor.solve(all);
-    gap.template middleRows<3>(3 * q) = root * factor.solve(own.compliance * values.stress.admissible[q] - all);
+    gap.template middleRows<3>(3 * q) =
+        root * factor.solve(own.compliance * values.stress.admissible[q] - all);
     direct_gap.template middleRows<3>(3 * q) =
         root * factor.solve(own.compliance * values.stress.discrete[q] - all);
     stress.template middleRows<3>(4 * q) = root * own.factor.transpose() * values.stress.discrete[q];

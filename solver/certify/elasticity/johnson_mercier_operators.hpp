@@ -18,8 +18,8 @@ struct JohnsonMercierRule {
   JohnsonMercierRule(const Spaces& spaces, int degree);
 
   /// Makes it the rule that has on each piece of the triangle in each part of the macro-element what the
-  /// piece needs for squares of fields of a degree, with the errors of the pieces. Takes pieces until they have
-  /// enough points, and answers how many it took: all together may have tens of megabytes.
+  /// piece needs for squares of fields of a degree, with the errors of the pieces. Takes pieces until they
+  /// have enough points, and answers how many it took: all together may have tens of megabytes.
   std::size_t fill(const Spaces& spaces, std::span<const LawPiece> pieces, int of_fields, double tolerance);
 
   int size() const { return static_cast<int>(places.size()); }
@@ -42,8 +42,8 @@ struct JohnsonMercierRule {
   void evaluate(const Spaces& spaces);
 };
 
-/// Integrals over the reference triangle of the functions at the inner nodes, times those of P2 on the triangle
-/// and times each other.
+/// Integrals over the reference triangle of the functions at the inner nodes, times those of P2 on the
+/// triangle and times each other.
 struct InnerMass {
   Eigen::Matrix<double, 6, JohnsonMercierRule::kInner> with_quadratic;
   Eigen::Matrix<double, JohnsonMercierRule::kInner, JohnsonMercierRule::kInner> inner;
@@ -72,8 +72,8 @@ std::vector<SymmetricLaw> laws_at(const Discretization& discrete, const JohnsonM
                                   const AffineMap& map, LawField<2>& law);
 
 /// The stresses on a macro-element for any number of columns of what describes them: its data and the
-/// coefficients of σ_h. Of those with the data it takes the one that is nearest to σ_h, by integrals over rules
-/// that may have a part of the points each.
+/// coefficients of σ_h. Of those with the data it takes the one that is nearest to σ_h, by integrals over
+/// rules that may have a part of the points each.
 template <int Columns>
 class JohnsonMercierStress {
  public:
@@ -83,7 +83,8 @@ class JohnsonMercierStress {
   JohnsonMercierStress(const AffineMap& map, const Block<JohnsonMercier::kData>& data,
                        const Block<Eigen::Dynamic>& coefficients);
 
-  /// By the points of a rule, tensors of Mandel: a stress with the data, and the symmetric part of σ_h itself.
+  /// By the points of a rule, tensors of Mandel: a stress with the data, and the symmetric part of σ_h
+  /// itself.
   struct Values {
     std::vector<Block<3>> admissible, discrete;
     Block<Eigen::Dynamic> skew;  ///< of σ_h: a row a point
@@ -106,7 +107,6 @@ class JohnsonMercierStress {
   const Block<kFree>& free() const { return free_; }  ///< of the nearest
 
  private:
-
   AffineMap map_;
   Eigen::Matrix3d to_triangle_;
   Block<JohnsonMercier::kStresses> with_data_;
@@ -118,14 +118,13 @@ class JohnsonMercierStress {
 
 /// √weight (σ* − the symmetric part of σ_h) in the norm of C, the rows of all points.
 template <int Columns>
-Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(const JohnsonMercierRule& rule,
-                                                          const AffineMap& map,
-                                                          const typename JohnsonMercierStress<Columns>::Values& stress,
-                                                          std::span<const SymmetricLaw> laws);
+Eigen::Matrix<double, Eigen::Dynamic, Columns> correction(
+    const JohnsonMercierRule& rule, const AffineMap& map,
+    const typename JohnsonMercierStress<Columns>::Values& stress, std::span<const SymmetricLaw> laws);
 
-/// The stresses and displacements on a macro-element for any number of columns of what describes them: the data
-/// of the macro-element, the coefficients of σ_h, and v_h at the nodes of P2 (x and y in turns). The stress is
-/// brought nearest to σ_h, and the strain of v, by its values at the inner nodes, to C σ*.
+/// The stresses and displacements on a macro-element for any number of columns of what describes them: the
+/// data of the macro-element, the coefficients of σ_h, and v_h at the nodes of P2 (x and y in turns). The
+/// stress is brought nearest to σ_h, and the strain of v, by its values at the inner nodes, to C σ*.
 template <int Columns>
 class JohnsonMercierFields {
  public:
