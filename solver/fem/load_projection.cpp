@@ -67,6 +67,7 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
     if (progress) progress->check_in(t);
     for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
   }
+  number_of_.reserve(count);
   std::vector<int> rough;
   for (int begin = 0; begin < count; begin += kNeighbours) {
     if (progress) progress->check();
@@ -91,6 +92,7 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
       unmet_ = known;
     }
   }
+  all_.shrink_to_fit();  // it stays as long as the problem, and has room for up to twice as many
   // One that has no cells would be off by as much as f.
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {

@@ -55,6 +55,26 @@ std::size_t other_loads(const Problem& problem, const std::vector<Variation>& sw
   return count;
 }
 
+/// The problem with those data, of its own and of the entries, that take the most memory: that goes by
+/// whether a material, a load or a traction varies in space, and not by how. Nothing if they are its own.
+std::optional<Problem> heaviest(const Problem& problem, const std::vector<Variation>& sweep) {
+  std::optional<Problem> other;
+  const auto made = [&]() -> Problem& { return other ? *other : other.emplace(problem); };
+  const auto so_far = [&]() -> const Problem& { return other ? *other : problem; };
+  for (const Variation& variation : sweep) {
+    if (variation.material && !is_constant(*variation.material) && is_constant(so_far().material))
+      made().material = *variation.material;
+    if (memory_of_load(variation.body) > memory_of_load(so_far().body)) made().body = variation.body;
+    for (const auto& [part, condition] : variation.boundary) {
+      if (has_uniform_load(condition)) continue;
+      const auto own = so_far().boundary.find(part);
+      if (own == so_far().boundary.end() || has_uniform_load(own->second))
+        made().boundary.insert_or_assign(part, condition);
+    }
+  }
+  return other;
+}
+
 Estimate with_sweep(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
                     const PredictedSizes& predicted) {
   Estimate most = Estimation(problem, settings.factorization, &predicted)();
@@ -69,15 +89,8 @@ Estimate with_sweep(const Problem& problem, const std::vector<Variation>& sweep,
                      (1 + static_cast<double>(operators) + of_loads * static_cast<double>(loads) +
                       of_gaps * static_cast<double>(without - loads)) +
                  quantities * static_cast<double>(1 + sweep.size());
-  const auto varies = [](const Variation& variation) {
-    return variation.material && !is_constant(*variation.material);
-  };
-  // What takes memory is that a material varies in space, not how.
-  const auto found = std::ranges::find_if(sweep, varies);
-  if (found != sweep.end() && is_constant(problem.material)) {
-    Problem varied = problem;
-    apply(*found, problem, varied);
-    const Estimate with_it = Estimation(varied, settings.factorization, &predicted)();
+  if (const std::optional<Problem> varied = heaviest(problem, sweep)) {
+    const Estimate with_it = Estimation(*varied, settings.factorization, &predicted)();
     most.memory_bytes = std::max(most.memory_bytes, with_it.memory_bytes);
     most.paper_form_bytes = std::max(most.paper_form_bytes, with_it.paper_form_bytes);
   }

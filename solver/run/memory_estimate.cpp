@@ -97,13 +97,6 @@ double dofs_per_triangle(const Spaces& spaces) {
   return 3. * spaces.traces_per_edge() + spaces.rotations();
 }
 
-/// A jump meets few triangles, but a few may be jumped through everywhere.
-double load_of_triangle(const VectorField& body) {
-  constexpr double of_jumps = 0.125;
-  if (is_uniform(body)) return 0;
-  return kIndex + (has_few_values(body) ? of_jumps : 1) * sizeof(ProjectedLoad);
-}
-
 /// A discretization of a triangle: its load, its degrees of freedom and those of half its edges' and points'
 /// sides.
 double discretization(const VectorField& body, const Spaces& spaces) {
@@ -111,7 +104,7 @@ double discretization(const VectorField& body, const Spaces& spaces) {
   const double own = dofs_per_triangle(spaces);
   const double couple = spaces.leaves_couples() ? 1 : 0;
   return kNumber * (spaces.displacements() + couple + dofs) + sizeof(CouplingDof) * dofs +
-         kIndex * (own + 1.5) + load_of_triangle(body);
+         kIndex * (own + 1.5) + memory_of_load(body);
 }
 
 /// The sum that is factored: numbers and place of a triangle, and the matrix of its shape.
@@ -164,11 +157,7 @@ double certificate(const Problem& problem, const Spaces& spaces, const SolveSize
 /// Whether all is known of the load and of the tractions.
 bool are_loads_uniform(const Problem& problem) {
   return is_uniform(problem.body) && std::ranges::all_of(problem.boundary, [](const auto& part) {
-           const Condition& condition = part.second;
-           if (const auto* traction = std::get_if<Traction>(&condition)) return is_uniform(traction->value);
-           if (const auto* pressure = std::get_if<Pressure>(&condition))
-             return pressure->value.is_constant() && is_uniform(pressure->besides);
-           return true;
+           return has_uniform_load(part.second);
          });
 }
 
@@ -201,6 +190,20 @@ double tables(const Problem& problem, const Spaces& spaces) {
 }
 
 }  // namespace
+
+/// A jump meets few triangles, but a few may be jumped through everywhere.
+double memory_of_load(const VectorField& body) {
+  constexpr double of_jumps = 0.125;
+  if (is_uniform(body)) return 0;
+  return kIndex + (has_few_values(body) ? of_jumps : 1) * sizeof(ProjectedLoad);
+}
+
+bool has_uniform_load(const Condition& condition) {
+  if (const auto* traction = std::get_if<Traction>(&condition)) return is_uniform(traction->value);
+  if (const auto* pressure = std::get_if<Pressure>(&condition))
+    return pressure->value.is_constant() && is_uniform(pressure->besides);
+  return true;
+}
 
 double memory_of_solution(const Spaces& spaces, double triangles) {
   const double per_point = 0.5 * (spaces.components + (spaces.rotations() ? 1 : 0));

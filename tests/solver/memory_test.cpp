@@ -593,6 +593,28 @@ TEST_P(Memory, OfASweepOfMaterialsIsThatOfOneAtATime) {
   EXPECT_NEAR(estimate(problem, sweep, {}, settings).problem.seconds, 3 * estimate(problem).seconds, 1e-12);
 }
 
+/// Those of an entry may take more than the problem's: each triangle has a load of its own.
+TEST_P(Memory, OfASweepOfLoadsThatVary) {
+  Problem problem = membrane(GetParam(), 66, 66);
+  problem.body = Field(-1);
+  std::vector<Variation> sweep(1, {"", VectorField(problems::formula("x")), problem.boundary, "other"});
+  problems::Shelf shelf;
+  Observer indifferent;
+  const Settings settings{ActiveSet{}, std::nullopt};
+  const Solution solution = solve(problem, sweep, settings, indifferent, shelf);
+  EXPECT_LE(static_cast<double>(solution.summary.peak_memory_bytes),
+            estimate(problem, sweep, {}, settings).problem.memory_bytes);
+}
+
+/// Each triangle has a law and a load of its own.
+TEST_P(Memory, OfAMembraneWhoseLawAndLoadVary) {
+  Problem problem = membrane(GetParam(), 130, 130);
+  problem.material = MembraneStiffness::isotropic(problems::formula("y < 0.5 ? 100 : 1"));
+  problem.body = VectorField(problems::formula("2 * (0.1 + x * y)"));
+  EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, {}}).summary.peak_memory_bytes),
+            estimate(problem).memory_bytes);
+}
+
 /// The factor of the problem is the cache's by then.
 TEST_P(Memory, OfASweepOfConstantMaterialsIsThatOfOneAtATime) {
   for (const int n : {20, 40}) {

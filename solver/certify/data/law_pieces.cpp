@@ -103,6 +103,7 @@ LawOnMesh::LawOnMesh(const Material& material, const Mesh& mesh, double toleranc
       whole_.assign(1, {});
       return;
     }
+  whole_.reserve(count);
   for (int t = 0; t < count; ++t) {
     if (t % 64 == 0) progress.check();
     // A law that varies so much on a triangle that it would take too many pieces is known less well.
