@@ -101,8 +101,7 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   Owners owners(discrete.triangles());
   std::iota(owners.begin(), owners.end(), 0);
   const bool has_quantities = !discrete.problem.quantities.empty();
-  if (has_quantities) certificate.sums.emplace(discrete.triangles());
-  PairSums* const sums = has_quantities ? &*certificate.sums : nullptr;
+  PairSums* const sums = has_quantities ? &certificate.sums.emplace(discrete.triangles()) : nullptr;
   LoadsBroughtBack of_patches;
   if (discrete.spaces().components == 1) {
     of_patches = add_patches(discrete, solution, pair, tolerance, owners, totals, progress);

@@ -28,15 +28,15 @@ struct SolveSizes {
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by);
 
+/// The same while the paper's iteration runs.
+double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
+                            Factorization by);
+
 /// What the load takes of each triangle.
 double memory_of_load(const VectorField& body);
 
 /// Whether all is known of the load of a condition, if it has one: it is the same everywhere.
 bool has_uniform_load(const Condition& condition);
-
-/// The same while the paper's iteration runs.
-double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
-                            Factorization by);
 
 /// The Solution of a solve alone.
 double memory_of_solution(const Spaces& spaces, double triangles);

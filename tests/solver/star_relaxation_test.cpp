@@ -104,7 +104,7 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
     JohnsonMercierFields<1> fields(
         map, {johnson_mercier_data(solved.discretization, tractions, t, map), solved.solution.stress.col(t),
               Eigen::Matrix<double, 12, 1>::Zero()});
-    const auto values = minimized(fields, rule, {}, laws);
+    const auto values = minimized(fields, rule, laws, std::span<const Eigen::Vector3d>());
     sum += JohnsonMercierOperators<1>(rule, map, values, laws).correction.squaredNorm();
   }
   return sum;

@@ -402,7 +402,7 @@ class ElasticFields {
     }
     LawField<2> law(made_.problem.material);
     const std::vector<SymmetricLaw> laws = laws_at(made_.discretization, rule, map, law);
-    const JohnsonMercierOperators<1> fields(rule, map, minimized(on_element, rule, lifted, laws), laws);
+    const JohnsonMercierOperators<1> fields(rule, map, minimized(on_element, rule, laws, lifted), laws);
     TriangleSums sums;
     for (int q = 0; q < rule.size(); ++q) {
       const JohnsonMercier::Place& place = rule.places[q];

@@ -206,11 +206,8 @@ class Minimization {
       coefficients << Eigen::MatrixXd::Zero(stress.rows(), 9), stress.col(t);
       const std::vector<SymmetricLaw> laws = laws_at(discrete_, rule, map, law);
       JohnsonMercierStress<Eigen::Dynamic> sigma(map, data, coefficients);
-      auto values = sigma.on(rule);
-      sigma.add(rule, laws, values);
-      sigma.minimize();
-      sigma.update(rule, values);
-      const Eigen::MatrixXd corrections = correction<Eigen::Dynamic>(rule, map, values, laws);
+      const Eigen::MatrixXd corrections =
+          correction<Eigen::Dynamic>(rule, map, minimized(sigma, rule, laws), laws);
       const auto changes = corrections.leftCols<9>();
       const Eigen::Matrix<double, 9, 9> own = 2 * changes.transpose() * changes;
       const Eigen::Matrix<double, 9, 1> towards = 2 * changes.transpose() * corrections.col(9);

@@ -189,7 +189,7 @@ ElasticSums::Found ElasticSums::by_points(int t, const AffineMap& map, std::span
   Found found;
   if (pieces.empty() || fill(pieces) == pieces.size()) {
     OnRule only = on(pieces.empty() ? johnson_mercier_rule(spaces, degree) : rule_of_pieces_);
-    only.values = minimized(fields, only.rule, only.lifted.strains, only.laws);
+    only.values = minimized(fields, only.rule, only.laws, only.lifted.strains);
     found.inner = fields.inner();
     add_points(t, map, only, error_of_whole, found);
     return found;

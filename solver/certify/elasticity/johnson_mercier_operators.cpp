@@ -299,18 +299,6 @@ JohnsonMercierOperators<Columns>::JohnsonMercierOperators(
   }
 }
 
-template <int Columns>
-typename JohnsonMercierFields<Columns>::Values minimized(JohnsonMercierFields<Columns>& fields,
-                                                         const JohnsonMercierRule& rule,
-                                                         std::span<const Eigen::Vector3d> lifted,
-                                                         std::span<const SymmetricLaw> laws) {
-  auto values = fields.on(rule, lifted);
-  fields.add(rule, laws, values);
-  fields.minimize();
-  fields.update(rule, values);
-  return values;
-}
-
 template class JohnsonMercierStress<Eigen::Dynamic>;
 template Eigen::MatrixXd correction<Eigen::Dynamic>(const JohnsonMercierRule&, const AffineMap&,
                                                     const JohnsonMercierStress<Eigen::Dynamic>::Values&,
@@ -319,10 +307,6 @@ template class JohnsonMercierFields<1>;
 template class JohnsonMercierFields<Eigen::Dynamic>;
 template struct JohnsonMercierOperators<1>;
 template struct JohnsonMercierOperators<Eigen::Dynamic>;
-template JohnsonMercierFields<1>::Values minimized<1>(JohnsonMercierFields<1>&, const JohnsonMercierRule&,
-                                                      std::span<const Eigen::Vector3d>,
-                                                      std::span<const SymmetricLaw>);
-
 JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const AffineMap& map,
                                          const SymmetricLaw& law) {
   constexpr int data = JohnsonMercier::kData, displacement = 12;
@@ -332,7 +316,8 @@ JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const A
   JohnsonMercierFields<Eigen::Dynamic> fields(
       map, {unit.topRows<data>(), unit.middleRows(data, functions), unit.bottomRows<displacement>()});
   const std::span<const SymmetricLaw> laws(&law, 1);
-  const JohnsonMercierOperators<Eigen::Dynamic> values(rule, map, minimized(fields, rule, {}, laws), laws);
+  const JohnsonMercierOperators<Eigen::Dynamic> values(
+      rule, map, minimized(fields, rule, laws, std::span<const Eigen::Vector3d>()), laws);
   gap = triangular_factor(values.gap);
   direct_gap = triangular_factor(values.direct_gap);
   strain = triangular_factor(values.strain);

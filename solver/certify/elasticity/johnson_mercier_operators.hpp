@@ -189,12 +189,16 @@ struct JohnsonMercierOperators {
   Block<Eigen::Dynamic> strain;      ///< ε(v), in the norm of E
 };
 
-/// The values on a rule that is the only one.
-template <int Columns>
-typename JohnsonMercierFields<Columns>::Values minimized(JohnsonMercierFields<Columns>& fields,
-                                                         const JohnsonMercierRule& rule,
-                                                         std::span<const Eigen::Vector3d> lifted,
-                                                         std::span<const SymmetricLaw> laws);
+/// The values of stresses or fields on a rule that is the only one. `lifted`: of fields.
+template <typename Fields, typename... Lifted>
+typename Fields::Values minimized(Fields& fields, const JohnsonMercierRule& rule,
+                                  std::span<const SymmetricLaw> laws, const Lifted&... lifted) {
+  typename Fields::Values values = fields.on(rule, lifted...);
+  fields.add(rule, laws, values);
+  fields.minimize();
+  fields.update(rule, values);
+  return values;
+}
 
 /// The same for all triangles of one shape and law, as triangular factors: the integrals are ‖gap z‖² with
 /// z = (data, stress, displacement), and so on. Squares of norms keep the digits that a quadratic form of the
