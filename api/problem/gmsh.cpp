@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "api/limits.hpp"
 #include "api/problem/gmsh_text.hpp"
 #include "api/wording.hpp"
 
@@ -31,6 +32,9 @@ struct GroupLine {
   Tag group;
   Element<2> element;
 };
+
+/// The number of no physical group.
+constexpr Tag no_group = 0;
 
 /// What the two versions of the format have in common once read.
 struct Contents {
@@ -60,13 +64,13 @@ Element<nodes> read_element(GmshText& text) {
   return element;
 }
 
-/// Reads the nodes of an element that lies in the given physical groups.
-void read_element_in(GmshText& text, Tag type, const std::vector<Tag>& groups, Contents& contents) {
+/// Reads the nodes of an element that lies in the given physical group.
+void read_element_in(GmshText& text, Tag type, Tag group, Contents& contents) {
   if (type == point) read_element<1>(text);
   if (type == triangle) contents.triangles.push_back(read_element<3>(text));
   if (type != line) return;
   const Element<2> element = read_element<2>(text);
-  for (const Tag group : groups) contents.lines.push_back({group, element});
+  if (group != no_group) contents.lines.push_back({group, element});
 }
 
 void read_coordinates(GmshText& text, Node& node) {
@@ -97,21 +101,21 @@ class Version2 {
       text.integer("the number of an element");
       const Tag type = text.integer("the type of an element");
       check_type(text, type);
-      read_element_in(text, type, read_groups(text), contents);
+      read_element_in(text, type, read_group(text), contents);
     }
   }
 
  private:
-  /// The first tag is the physical group, 0 for none, its sign the orientation in it; the others do not
-  /// matter here: the geometric entity, and the number of partitions with their numbers.
-  static std::vector<Tag> read_groups(GmshText& text) {
+  /// The first tag is the physical group, its sign the orientation in it; the others do not matter here: the
+  /// geometric entity, and the number of partitions with their numbers.
+  static Tag read_group(GmshText& text) {
     const std::size_t tags = text.count("the number of tags", 2);
-    Tag group = 0;
+    Tag group = no_group;
     for (std::size_t i = 0; i < tags; ++i) {
       const Tag tag = text.integer("a tag");
       if (i == 0) group = std::abs(tag);
     }
-    return group == 0 ? std::vector<Tag>() : std::vector<Tag>{group};
+    return group;
   }
 };
 
@@ -153,11 +157,11 @@ class Version4 {
       const std::size_t count = text.count("the number of elements", 4);
       if (count > 0) check_type(text, type);
       const auto found = curve_groups_.find(entity);
-      const bool has_groups = dimension == 1 && found != curve_groups_.end();
-      const std::vector<Tag> groups = has_groups ? found->second : std::vector<Tag>();
+      const bool has_group = dimension == 1 && found != curve_groups_.end();
+      const Tag group = has_group ? found->second : no_group;
       for (std::size_t i = 0; i < count; ++i) {
         text.integer("the number of an element");
-        read_element_in(text, type, groups, contents);
+        read_element_in(text, type, group, contents);
       }
     }
   }
@@ -177,14 +181,19 @@ class Version4 {
     for (std::size_t i = 0; i < count; ++i) {
       // The sign is the orientation of the entity in the group.
       const Tag group = std::abs(text.integer("the number of a physical group"));
-      if (dimension == 1) curve_groups_[tag].push_back(group);
+      if (dimension != 1) continue;
+      const auto [known, is_first] = curve_groups_.insert({tag, group});
+      if (!is_first && known->second != group)
+        text.fail("curve " + std::to_string(tag) + " is in the physical groups " +
+                  std::to_string(known->second) + " and " + std::to_string(group) +
+                  "; put it in one, for an edge of the boundary is in one part");
     }
     if (dimension == 0) return;
     const std::size_t bounds = text.count("the number of bounding entities", 2);
     for (std::size_t i = 0; i < bounds; ++i) text.integer("the number of a bounding entity");
   }
 
-  std::map<Tag, std::vector<Tag>> curve_groups_;
+  std::map<Tag, Tag> curve_groups_;
 };
 
 void read_names(GmshText& text, Contents& contents) {
@@ -346,6 +355,7 @@ MeshData parse_gmsh(std::string_view text) {
   Nodes nodes(std::move(contents.nodes));
   for (const auto& element : contents.triangles) nodes.use(element);
   MeshData data;
+  data.file = "/domain/msh";
   data.points = nodes.take_numbers();
   if (nodes.height() != 0)
     data.notes.push_back("the mesh of the file lies at z = " + shortest(nodes.height()) +
@@ -356,24 +366,13 @@ MeshData parse_gmsh(std::string_view text) {
     const auto name = contents.curve_names.find(group);
     const std::string part = name == contents.curve_names.end() ? std::to_string(group) : name->second;
     const auto [place, is_new] = parts.insert({part, data.boundary.size()});
+    if (is_new && parts.size() > limits::parts)
+      GmshText::fail_at(element.text_line, "the lines are in more than " + std::to_string(limits::parts) +
+                                               " physical groups; put curves in the same");
     if (is_new) data.boundary.push_back({part, {}});
     data.boundary[place->second].second.push_back(nodes.numbers(element));
   }
   return data;
-}
-
-Mesh gmsh_mesh(std::string_view text) {
-  const MeshData data = parse_gmsh(text);
-  try {
-    return import_mesh(data);
-  } catch (const InvalidProblem& invalid) {
-    std::vector<Fault> faults;
-    const std::string_view domain = "/domain/";
-    for (const Fault& fault : invalid.faults())
-      faults.push_back({"/domain/msh",
-                        fault.where.substr(domain.size()) + ", counted from 0 in the file: " + fault.detail});
-    throw InvalidProblem(std::move(faults));
-  }
 }
 
 }  // namespace signorini::api

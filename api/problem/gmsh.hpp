@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "mesh/import.hpp"
+#include "problem/domain.hpp"
 
 namespace signorini::api {
 
@@ -12,12 +12,10 @@ namespace signorini::api {
 ///
 /// Throws InvalidProblem at `/domain/msh` with the line for what is no such file, and for other elements
 /// than points, lines and triangles of the first order, a z that is not constant, and nodes that do not
-/// exist. A constant z other than 0 is left out, and noted. The partitions that elements of version 2.2
+/// exist, and for curves in several physical groups, for a line is in one part. A constant z other than 0 is
+/// left out, and noted. The partitions that elements of version 2.2
 /// belong to do not matter; version 4.1 has other entities in a partitioned mesh, which is refused. Whether
 /// the triangles form a mesh is for import_mesh to see.
 MeshData parse_gmsh(std::string_view text);
-
-/// The mesh of the file: parse_gmsh and import_mesh, whose faults then stand at `/domain/msh`.
-Mesh gmsh_mesh(std::string_view text);
 
 }  // namespace signorini::api

@@ -1,6 +1,7 @@
 #include "mesh/bodies.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "mesh/edge_table.hpp"
 
@@ -40,8 +41,11 @@ std::vector<std::vector<int>> bodies(const std::vector<std::array<int, 3>>& tria
                                      const EdgeTable& edges) {
   return joined(triangles.size(), [&](int triangle, const auto& visit) {
     for (int i = 0; i < 3; ++i) {
-      const std::array ends{triangles[triangle][i], triangles[triangle][(i + 1) % 3]};
-      for (const TriangleEdge& side : edges.between(ends)) visit(side.triangle);
+      const auto sides = edges.between({triangles[triangle][i], triangles[triangle][(i + 1) % 3]});
+      // Of thousands that have one edge each needs only those next to it in the table.
+      const auto own = std::ranges::equal_range(sides, triangle, {}, &TriangleEdge::triangle);
+      if (own.begin() != sides.begin()) visit(std::prev(own.begin())->triangle);
+      if (own.end() != sides.end()) visit(own.end()->triangle);
     }
   });
 }

@@ -74,22 +74,29 @@ class Import {
   /// After each step, none of which takes a tenth of a second for the largest mesh that a request can hold.
   void throw_if_any() const {
     if (progress_) progress_->check();
-    if (!faults_.empty()) throw InvalidProblem(faults_);
+    if (faults_.empty()) return;
+    if (data_.file.empty()) throw InvalidProblem(faults_);
+    std::vector<Fault> in_file;
+    for (const auto& [where, detail] : faults_)
+      in_file.push_back({data_.file, where.substr(std::string_view("/domain/").size()) +
+                                         ", counted from 0 in the file: " + detail});
+    throw InvalidProblem(std::move(in_file));
   }
 
   bool exists(int point) const { return point >= 0 && point < static_cast<int>(data_.points.size()); }
 
   void check_names() {
     std::set<std::string> known;
+    FaultList bad("/domain/boundary", "more names or parts that are none");
     for (const auto& [name, edges] : data_.boundary) {
       names_.push_back(name);
       const std::string where = part_pointer(name);
-      if (name.empty()) faults_.push_back({where, "the name of a part must not be empty"});
-      if (name == "all")
-        faults_.push_back({where, "is reserved for every part not named; choose another name"});
-      if (!known.insert(name).second) faults_.push_back({where, "there are two parts of this name"});
-      if (edges.empty()) faults_.push_back({where, "must have at least one edge"});
+      if (name.empty()) bad.add(where, "the name of a part must not be empty");
+      if (name == "all") bad.add(where, "is reserved for every part not named; choose another name");
+      if (!known.insert(name).second) bad.add(where, "there are two parts of this name");
+      if (edges.empty()) bad.add(where, "must have at least one edge");
     }
+    std::move(bad).append_to(faults_);
   }
 
   void check_points() {
@@ -107,14 +114,12 @@ class Import {
       if (const std::string fault = fault_of_numbers(triangles_[t]); !fault.empty())
         bad.add(pointer("/domain/triangles", t), fault);
     std::move(bad).append_to(faults_);
-    for (const auto& [name, edges] : data_.boundary) {
-      const std::string where = part_pointer(name);
-      FaultList bad_edges(where, "more edges of points that do not exist or are the same");
+    FaultList bad_edges("/domain/boundary", "more edges of points that do not exist or are the same");
+    for (const auto& [name, edges] : data_.boundary)
       for (std::size_t i = 0; i < edges.size(); ++i)
         if (const std::string fault = fault_of_numbers(edges[i]); !fault.empty())
-          bad_edges.add(pointer(where, i), fault);
-      std::move(bad_edges).append_to(faults_);
-    }
+          bad_edges.add(pointer(part_pointer(name), i), fault);
+    std::move(bad_edges).append_to(faults_);
   }
 
   template <std::size_t size>
@@ -131,7 +136,8 @@ class Import {
 
   void check_frame() {
     if (const std::string reason = why_no_frame(data_.points); !reason.empty())
-      throw InvalidProblem({{"/domain/points", reason}});
+      faults_.push_back({"/domain/points", reason});
+    throw_if_any();
     const UnitFrame frame(data_.points);
     for (const Point& x : data_.points) scaled_.push_back(frame.scaled(x));
   }
@@ -215,8 +221,10 @@ class Import {
   std::vector<std::vector<std::array<int, 2>>> edges_of_parts(const EdgeTable& edges) {
     std::map<std::array<int, 2>, int> part_of_edge;
     std::vector<std::vector<std::array<int, 2>>> parts;
+    FaultList bad("/domain/boundary", "more edges that are not on the boundary or are taken already");
     for (int part = 0; part < static_cast<int>(names_.size()); ++part)
-      parts.push_back(edges_of_part(part, edges, part_of_edge));
+      parts.push_back(edges_of_part(part, edges, part_of_edge, bad));
+    std::move(bad).append_to(faults_);
     check_missing(edges, part_of_edge);
     throw_if_any();
     return parts;
@@ -231,9 +239,9 @@ class Import {
 
   /// The edges of a part, the domain on their left. Remembers the part that took an edge.
   std::vector<std::array<int, 2>> edges_of_part(int part, const EdgeTable& table,
-                                                std::map<std::array<int, 2>, int>& part_of_edge) {
+                                                std::map<std::array<int, 2>, int>& part_of_edge,
+                                                FaultList& bad) {
     const std::string where = part_pointer(names_[part]);
-    FaultList bad(where, "more edges that are not on the boundary or are taken already");
     std::vector<std::array<int, 2>> directed;
     const auto& edges = data_.boundary[part].second;
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -250,7 +258,6 @@ class Import {
         directed.push_back(entries[0].directed());
       }
     }
-    std::move(bad).append_to(faults_);
     return directed;
   }
 

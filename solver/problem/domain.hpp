@@ -53,6 +53,9 @@ struct MeshData {
   std::vector<std::pair<std::string, std::vector<std::array<int, 2>>>> boundary;
   /// Sentences on what was left out to get it.
   std::vector<std::string> notes = {};
+  /// The pointer of the file's text that they were read from, if they were: there stands what is wrong with
+  /// them.
+  std::string file = {};
 };
 
 using Domain = std::variant<Rectangle, Polygon, MeshData>;

@@ -390,6 +390,38 @@ TEST(Budget, ManyBodiesWithPartsOfTheirOwnAreLeftToTheSolve) {
     }
 }
 
+/// No mesh, but it takes a solve to see that.
+TEST(Budget, ManyTrianglesOnOneEdgeAreLeftToTheSolve) {
+  json mesh{{"type", "mesh"}, {"points", {{0, 0}, {1, 0}}}, {"boundary", {{"rim", json::array()}}}};
+  for (int i = 0; i < 12'000; ++i) {
+    mesh["points"].push_back({0.5, 1 + i});
+    mesh["triangles"].push_back({0, 1, 2 + i});
+    mesh["boundary"]["rim"].push_back({0, 2 + i});
+  }
+  json problem = membrane_on(mesh, json::object());
+  problem["model"] = "elasticity";
+  problem["material"] = {{"young", 1}, {"poisson", 0.3}};
+  problem["load"] = {{"body", {0, -1}}};
+  problem["boundary"] = {{"rim", {{"type", "fixed"}}}};
+  EXPECT_EQ(found_soon(problem), "");
+}
+
+/// A few kilobytes that would be gigabytes, were each line in each of the groups.
+TEST(Budget, ACurveIsInOneGroup) {
+  for (const bool same : {false, true}) {
+    std::string groups = "5000", lines = "1 1 1 20000";
+    for (int i = 0; i < 5000; ++i) groups += same ? " 1" : ' ' + std::to_string(1 + i);
+    for (int i = 0; i < 20'000; ++i) lines += "\n1 1 2";
+    const std::string file =
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 1 0 0\n1 0 0 0 1 1 0 " + groups +
+        " 0\n$EndEntities\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n" +
+        "$EndNodes\n$Elements\n2 20001 1 20001\n" + lines + "\n2 1 2 1\n1 1 2 3\n$EndElements\n";
+    json problem = membrane_on({{"type", "gmsh"}, {"msh", file}}, json::object());
+    problem["boundary"] = {{"1", {{"type", "fixed"}}}};
+    EXPECT_EQ(found_soon(problem), "/domain/msh");
+  }
+}
+
 /// As many as are looked at, of which the boxes of all edges meet.
 TEST(Budget, ManySliversAreLeftToTheSolve) {
   for (const bool around_a_point : {false, true}) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh/import.hpp"
+
 namespace signorini::api::gmsh_test {
 namespace {
 
@@ -167,7 +169,7 @@ TEST(Gmsh, LeavesAConstantHeightOutAndSaysSo) {
   expect_square(data);
   ASSERT_EQ(data.notes.size(), 1u);
   EXPECT_NE(data.notes[0].find("z = -2.5"), std::string::npos) << data.notes[0];
-  EXPECT_EQ(gmsh_mesh(lifted(-2.5)).notes, data.notes);
+  EXPECT_EQ(import_mesh(parse_gmsh(lifted(-2.5))).notes, data.notes);
 }
 
 TEST(Gmsh, RefusesAMeshInAnotherPlane) {
@@ -180,15 +182,31 @@ TEST(Gmsh, RefusesAMeshInAnotherPlane) {
   EXPECT_NE(fault.find("turn it into the plane of x and y"), std::string::npos) << fault;
 }
 
+TEST(Gmsh, TakesAGroupThatACurveNamesTwiceOnce) {
+  expect_square(parse_gmsh(replaced(version4, "1 7 2 3 -4", "3 7 -7 7 2 3 -4")));
+}
+
+TEST(Gmsh, TakesSoManyGroupsAsAMeshHasParts) {
+  std::string elements;
+  const int groups = 12'001;
+  for (int i = 1; i <= groups; ++i)
+    elements += std::to_string(10 + i) + " 1 1 " + std::to_string(100 + i) + " 1 20\n";
+  const std::string text =
+      replaced(replaced(version2, "$Elements\n8", "$Elements\n" + std::to_string(8 + groups)), "$EndElements",
+               elements + "$EndElements");
+  const std::string fault = fault_of(text, parse_gmsh);
+  EXPECT_NE(fault.find("the lines are in more than 12000 physical groups"), std::string::npos) << fault;
+}
+
 TEST(Gmsh, MakesAMesh) {
-  const Mesh mesh = gmsh_mesh(version4);
+  const Mesh mesh = import_mesh(parse_gmsh(version4));
   EXPECT_DOUBLE_EQ(mesh.area(), 1);
   EXPECT_EQ(mesh.boundary[1].edges.size(), 3u);
 }
 
 TEST(Gmsh, StatesFaultsOfTheMeshAtTheFile) {
   const std::string text = replaced(version2, "3 1 2 7 2 20 3", "3 1 2 0 2 20 3");
-  const std::string fault = fault_of(text, gmsh_mesh);
+  const std::string fault = fault_of(text, [](std::string_view file) { import_mesh(parse_gmsh(file)); });
   EXPECT_EQ(fault.find("boundary, counted from 0 in the file: no part has the edge 1-2"), 0u) << fault;
 }
 
@@ -231,6 +249,7 @@ TEST(Gmsh, RefusesWhatItCannotReadWithTheLine) {
       {version4, "2 1 2 2", "2 1 3 2", "line 44: elements of type 3 (quadrangles)"},
       {version4, "1 4 1 0", "1 4 1 987654321", "line 10: the number of entities is 987654321"},
       {version4, "1 -5 2", "1 -9223372036854775808 2", "line 12: expected the number of a physical group"},
+      {version4, "1 7 2 3 -4", "2 7 -5 2 3 -4", "line 14: curve 3 is in the physical groups 7 and 5"},
       {version4, "$Entities", "$PartitionedEntities", "line 9: a partitioned mesh"},
   };
   for (const Case& bad : cases) {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "api/problem/gmsh.hpp"
+#include "mesh/import.hpp"
 #include "problem/field.hpp"
 
 /// Whatever text stands for a mesh of Gmsh, it is refused with a fault, or its triangles and lines have
@@ -22,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const auto& [name, edges] : mesh.boundary)
       for (const auto& edge : edges)
         for (const int point : edge) require_point(point);
-    api::gmsh_mesh(text);
+    import_mesh(mesh);
   } catch (const InvalidProblem&) {
   }
   return 0;
