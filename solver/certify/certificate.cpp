@@ -115,7 +115,8 @@ Certificate certify_sound_data(const Discretization& discrete, const Solution& s
   CarriedLoads carried = carry_uncertain_loads(discrete, laws, pair.pressure, of_patches);
   if (!carried.is_held) unmet.push_back(nothing_takes(pair.pressure.lacks));
   const bool is_little = carried.norm <= kLittle * bound_from(totals).value;
-  if (carried.is_held && !is_little)
+  // What the pressure of an iteration lacks that did not converge is not worth a factor.
+  if (carried.is_held && carried.are_of_data && !is_little)
     carried.norm =
         std::min(carried.norm, carried_by_motions(discrete, laws, carried.loads, carried.root, progress));
   totals.add(carried);

@@ -1,6 +1,8 @@
 #include "progress.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "progress/overflow.hpp"
@@ -18,21 +20,33 @@ void Progress::enter(Phase phase) {
   entered_ = now;
   phase_ = phase;
   observer_.entered(phase);
-  found_ = false;
+  found_.reset();
   check();
+}
+
+void Progress::found() {
+  const bool was_in_time = time_left_to_iterate() > 0;
+  if (!found_ || was_in_time) found_ = seconds();
 }
 
 void Progress::check() {
   if (!observer_.keep_going()) throw Cancelled();
-  if (!found_ && !in_time())
-    throw TimeUp("the time limit of " + std::to_string(*time_limit_) + " s was reached in the phase '" +
-                 name(phase_) +
-                 "', before there was any iterate: raise solver.time_limit or coarsen the mesh");
+  if (time_left().value_or(1) > 0) return;
+  throw TimeUp("the time limit of " + std::to_string(*time_limit_) + " s was reached in the phase '" +
+               name(phase_) + "', before " +
+               (found_ ? "the fields of an iterate were known" : "there was any iterate") +
+               ": raise solver.time_limit or coarsen the mesh");
+}
+
+double Progress::time_left_to_iterate() const {
+  return time_limit_ ? *time_limit_ - spent_before_ - seconds() : std::numeric_limits<double>::infinity();
 }
 
 std::optional<double> Progress::time_left() const {
   if (!time_limit_) return std::nullopt;
-  return *time_limit_ + (phase_ == Phase::certify ? kForBound : 0) - spent_before_ - seconds();
+  const double to_iterate = time_left_to_iterate();
+  if (phase_ == Phase::certify) return to_iterate + kForAnswer;
+  return found_ ? std::max(to_iterate, *found_ + kForAnswer - seconds()) : to_iterate;
 }
 
 bool Progress::record(Iteration iteration) {
@@ -45,7 +59,9 @@ bool Progress::record(Iteration iteration) {
   history_.push_back(iteration);
   observer_.iterated(iteration);
   if (!observer_.keep_going()) throw Cancelled();
-  return in_time();
+  // To complete an iterate takes no longer than what led to the first one, mostly.
+  const double to_complete = std::min(entered_, seconds() - entered_);
+  return time_left_to_iterate() > to_complete;
 }
 
 Level Progress::refined(Level level, const Solution& solution) {

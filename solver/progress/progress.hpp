@@ -20,11 +20,11 @@ class Progress {
 
   Observer& observer() { return observer_; }
 
-  /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up and there is no answer yet.
+  /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up.
   void enter(Phase phase);
 
-  /// There is an iterate to be kept: until the next phase, only the observer ends the solve.
-  void found() { found_ = true; }
+  /// There is an iterate to be completed, for which there is a little time beyond the limit.
+  void found();
 
   /// Seconds of the time limit that are left, if there is one: what a part of the solve may take that has a
   /// record of its own.
@@ -40,7 +40,7 @@ class Progress {
   }
 
   /// Numbers and dates the record of an iteration, keeps it and shows it to the observer. Returns false
-  /// when the time is up, so that the iterate can be kept; throws Cancelled.
+  /// when the time is nearly up, so that the iterate can be completed; throws Cancelled.
   bool record(Iteration iteration);
 
   /// Dates the record of a level and shows it with its solution to the observer.
@@ -58,18 +58,19 @@ class Progress {
   double seconds_in(Phase phase) const;
 
  private:
-  /// The phase certify may go on a little beyond the limit: hardly any time is needed for the bound of a
-  /// small problem whose iteration the limit ended.
-  static constexpr double kForBound = 0.15;
+  /// To complete an iterate and to certify may go on a little beyond the limit: hardly any time is needed for
+  /// the fields and the bound of a small problem whose iteration the limit ended.
+  static constexpr double kForAnswer = 0.15;
 
-  bool in_time() const { return time_left().value_or(1) > 0; }
+  /// Till the limit itself.
+  double time_left_to_iterate() const;
 
   Observer& observer_;
   std::optional<double> time_limit_;
   double spent_before_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Phase phase_ = Phase::mesh;
-  bool found_ = false;
+  std::optional<double> found_;  ///< when an iterate was, in this phase
   double entered_ = 0;
   std::array<double, 5> spent_{};
   std::vector<Iteration> history_;

@@ -135,13 +135,14 @@ double relaxation(double own_shapes) {
          own_shapes * sizeof(TriangleForms::Matrix);
 }
 
-/// What the admissible stress of an elastic body takes while it becomes the best near the contact: the sparse
-/// form of its stream function, of which its minimum under conditions makes copies. As measured of thin
-/// bodies, whose triangles all take part. By the lower order such a body takes up to an eighth more than is
-/// foreseen, for others would take half of it.
+/// What the admissible stress takes while it becomes the best near the contact: the sparse form of its stream
+/// function, of which its minimum under conditions makes copies. As measured of thin bodies, whose triangles
+/// all take part. A membrane of the higher order has its patches instead.
 double minimization(const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double of_contact = 28e3, triangles_at_contact = 16;
-  return spaces.order * of_contact * std::min(sizes.contact, sizes.triangles / triangles_at_contact);
+  constexpr double of_body = 28e3, of_body_lower = 3e3, of_membrane_lower = 10e3, triangles_at_contact = 16;
+  const double of_contact = spaces.components == 1 ? (spaces.order == 0 ? of_membrane_lower : 0)
+                                                   : (spaces.order == 0 ? of_body_lower : of_body);
+  return of_contact * std::min(sizes.contact, sizes.triangles / triangles_at_contact);
 }
 
 /// What takes place while the error is bounded: the admissible pair and its shares, the law if it varies, and
@@ -149,9 +150,8 @@ double minimization(const Spaces& spaces, const SolveSizes& sizes) {
 double certificate(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
   constexpr double pair = 170, of_cut = 64;
   const double of_triangle = pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut);
-  const double of_body =
-      std::max(minimization(spaces, sizes), sizes.triangles * relaxation(sizes.own_shapes));
-  return sizes.triangles * of_triangle + (spaces.components == 2 ? of_body : 0);
+  const double of_best_pair = spaces.components == 2 ? sizes.triangles * relaxation(sizes.own_shapes) : 0;
+  return sizes.triangles * of_triangle + std::max(minimization(spaces, sizes), of_best_pair);
 }
 
 /// Whether all is known of the load and of the tractions.
@@ -179,14 +179,16 @@ double tables_of_jumps(const Spaces& spaces) {
 }
 
 /// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
-/// where its pressure changes, and the points of one triangle of an elastic body on which the law is cut into
-/// pieces. As measured.
+/// where its pressure changes, and the cells or points of one triangle on which the law is cut into pieces.
+/// As measured.
 double tables(const Problem& problem, const Spaces& spaces) {
   const bool is_membrane = spaces.components == 1;
-  const double of_shapes = 8e5, of_patches = 3e6, of_points = 4e6;
+  const double of_shapes = 8e5, of_patches = 3e6, of_points = 4e6, of_cells = 3e5;
   return of_shapes + (is_uniform(problem.body) ? 0 : tables_of_jumps(spaces)) +
          (is_membrane && spaces.order == 1 ? of_patches : 0) +
-         (is_membrane || is_constant(problem.material) ? 0 : of_points);
+         (is_constant(problem.material) ? 0
+          : is_membrane                 ? of_cells
+                                        : of_points);
 }
 
 }  // namespace

@@ -101,6 +101,19 @@ TEST_P(Memory, OfManyPressuresThatVanish) {
   expect_bound(strip);
 }
 
+/// Its pressure lacks what only Γ_D takes, across the whole body.
+TEST_P(Memory, OfAnIterationThatItsLimitEnds) {
+  for (const int n : {30, 60})
+    for (Problem problem : {membrane(GetParam(), n, n), elastic(GetParam(), n, n)}) {
+      problem.mesh.pattern = Pattern::crossed;
+      problem.boundary = {{"left", Fixed{}},
+                          {"bottom", Contact{Field(0)}},
+                          {"top", Contact{Field(1)}},
+                          {"right", Contact{Field(1)}}};
+      expect_bound(problem, {Mprgp{1e-9, 5}, std::nullopt});
+    }
+}
+
 /// All triangles at one point: what is relaxed around it is no square of their number.
 TEST_P(Memory, OfAFan) {
   const int count = long_tests() ? 6000 : 1500;
@@ -245,9 +258,8 @@ TEST_P(Memory, OfThinBodiesOnRollers) {
 }
 
 /// All of whose triangles lie at a contact.
-TEST(MemoryOfAColumn, CountsTheMinimizationOfItsStress) {
-  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
-  Problem column = elastic(Scheme::conforming, 1, 1);
+TEST_P(Memory, OfAThinColumn) {
+  Problem column = elastic(GetParam(), 1, 1);
   column.mesh = {};
   column.mesh.refine = 1;
   column.domain = shuffled_squares({2, 235}, Pattern::crossed, {1, 235});
@@ -801,6 +813,17 @@ TEST(MemoryOfTables, CountsThePiecesOfAWildStiffness) {
       wild.material = MembraneStiffness::isotropic(problems::formula(law));
       EXPECT_LE(static_cast<double>(solve(wild).summary.peak_memory_bytes), estimate(wild).memory_bytes);
     }
+}
+
+TEST(MemoryOfTables, CountsTheCellsOfAStiffnessThatJumpsOnACurve) {
+  if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
+  const Field jump = problems::formula("(x - 0.5)^2 + (y - 0.5)^2 < 0.04 ? 1e6 : 1");
+  for (const int n : {1, 2}) {
+    Problem plate = membrane(Scheme::nonconforming, n, n);
+    plate.domain = Rectangle{{0, 0}, {1, 1}};
+    plate.material = MembraneStiffness{jump, Field(0.1), jump};
+    expect_bound(plate);
+  }
 }
 
 /// On a few long triangles each wave has all the pieces that it may, and fields beside a gap with a root need

@@ -228,8 +228,7 @@ TEST(Limits, TimeLimitWithinAnIterationKeepsTheOneBefore) {
 }
 
 TEST(Limits, TimeLimitWithinAnIterationOfThePaperKeepsTheOneBefore) {
-  const Problem problem =
-      problems::paper(Scheme::nonconforming, 128);  // a solve looks at the time in between
+  const Problem problem = problems::paper(Scheme::nonconforming, 96);  // a solve looks at the time in between
   constexpr int limit = 4;  // what is before the first iteration takes a second under sanitizers
   Dawdler dawdler(limit);
   const Solution late = solve(problem, {PaperUzawa{1e-3, 1, 1, 1e-14, 20}, 1. * limit}, dawdler);
@@ -238,6 +237,41 @@ TEST(Limits, TimeLimitWithinAnIterationOfThePaperKeepsTheOneBefore) {
   EXPECT_EQ(late.history.size(), 1u);
   EXPECT_TRUE(late.stress == first.stress);
   EXPECT_TRUE(late.displacement == first.displacement);
+}
+
+/// Takes a moment whenever it is asked after the first iteration.
+class Slow : public Observer {
+ public:
+  static constexpr double kMoment = 0.05;
+
+  void iterated(const Iteration&) override { has_iterate_ = true; }
+  bool keep_going() override {
+    if (!has_iterate_) return true;
+    ++asked_;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kMoment));
+    return true;
+  }
+  double seconds() const { return asked_ * kMoment; }
+
+ private:
+  bool has_iterate_ = false;
+  int asked_ = 0;
+};
+
+TEST(Limits, TimeLimitHoldsWhileAnIterateIsCompleted) {
+  constexpr double limit = 0.5, beyond = 0.25;
+  for (const Method& method : {Method{ActiveSet{}}, Method{Mprgp{1e-9, 1}}}) {
+    Slow slow;
+    try {
+      solve(problems::paper(Scheme::nonconforming, 64), {method, limit}, slow);
+      ADD_FAILURE() << "there was time enough";
+    } catch (const TimeUp& late) {
+      EXPECT_NE(std::string(late.what()).find("before the fields of an iterate were known"),
+                std::string::npos)
+          << late.what();
+    }
+    EXPECT_LT(slow.seconds(), limit + beyond);
+  }
 }
 
 /// Lets the time run out between the iterate and its bound.

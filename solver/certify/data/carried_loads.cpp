@@ -68,13 +68,12 @@ class Carrier {
   CarriedLoads run(const LoadsBroughtBack& of_patches) {
     const std::vector<double>& forces = of_patches.forces;
     std::vector<Action> into(mesh_.triangles.size());
-    bool is_any = !pressure_.lacks.empty();
+    CarriedLoads carried{.loads = UncertainLoads(mesh_), .norm_on_patches = std::sqrt(of_patches.square)};
     for (int t = 0; t < discrete_.triangles(); ++t) {
       if (!forces.empty()) add_load(t, forces[t], into[t]);
-      is_any = !start(t, into[t]) || is_any;
+      carried.are_of_data = !start(t, into[t]) || carried.are_of_data;
     }
-    CarriedLoads carried{.loads = UncertainLoads(mesh_), .norm_on_patches = std::sqrt(of_patches.square)};
-    if (!is_any) return carried;
+    if (!carried.are_of_data && pressure_.lacks.empty()) return carried;
     for (const ContactPressure::Lack& lack : pressure_.lacks) act(lack.edge, {lack.force, lack.moment}, into);
     std::vector<int> order = from_fixed_parts();
     if (order.empty()) {

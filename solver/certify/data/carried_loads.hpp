@@ -32,6 +32,8 @@ struct CarriedLoads {
   double change_of_pressure = 0;
   /// Neither Γ_D nor Γ_C and rollers take it: then the norm says nothing.
   bool is_held = true;
+  /// Something is not known of the data, beside what the pressure lacks.
+  bool are_of_data = false;
   /// What is carried, with what the pressure and the rollers take; and without Γ_D the triangle to which.
   UncertainLoads loads;
   std::optional<int> root = std::nullopt;

@@ -86,9 +86,10 @@ void minimize_stream_function(const Discretization& discrete, const AdmissibleDi
     std::ranges::move(moving_pressures(discrete, v, clearance, pressure, i, std::move(changes)),
                       std::back_inserter(moving));
   }
-  const SquareOfCurl square(discrete, nodes, d);
-  const Eigen::VectorXd change = admissible_minimum(
-      square.curvature, square.slope + square.curvature * stream_function, moving, {}, progress);
+  SquareOfCurl square(discrete, nodes, d);
+  square.slope += square.curvature * stream_function;
+  const Eigen::VectorXd change =
+      admissible_minimum(std::move(square.curvature), std::move(square.slope), moving, {}, progress);
   move(moving, change, pressure);
   stream_function += change;
 

@@ -23,7 +23,7 @@ Problem with_cut(const Problem& whole, const Condition& on_cut) {
 
 LocalContact::LocalContact(const Discretization& whole, const Patch& patch, const Condition& on_cut,
                            Progress& progress)
-    : problem_(with_cut(whole.problem, on_cut)), discretization_(problem_, *patch.mesh) {
+    : problem_(with_cut(whole.problem, on_cut)), discretization_(problem_, *patch.mesh, &progress) {
   discretization_.draw_near(whole.clearance.reach);
   const bool held = held_by_contact_alone(discretization_);
   const HybridSystem system = assemble(discretization_, progress);
