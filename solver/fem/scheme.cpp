@@ -2,6 +2,7 @@
 
 #include "fem/lagrange.hpp"
 #include "fem/quadrature.hpp"
+#include "fem/small_matrices.hpp"
 
 namespace signorini {
 namespace {
@@ -27,7 +28,9 @@ Spaces pair(const RaviartThomas& row, int components) {
     divergence += weight * v * row.reference_divergences(x).transpose();
     mass += weight * v * v.transpose();
   }
-  return {order, components, row, for_components(divergence, components), for_components(mass, components)};
+  const LocalMatrix lifting = solve_definite(divergence * divergence.transpose(), divergence).transpose();
+  const auto all = [components](const LocalMatrix& form) { return for_components(form, components); };
+  return {order, components, row, all(divergence), all(mass), all(kernel(divergence)), all(lifting)};
 }
 
 }  // namespace

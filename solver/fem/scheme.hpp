@@ -19,6 +19,8 @@ struct Spaces {
   const RaviartThomas& row;
   LocalMatrix divergence;         ///< (div τ_j, v_i); the same on every triangle
   LocalMatrix displacement_mass;  ///< (v_i, v_j) on a triangle, divided by twice its area
+  LocalMatrix solenoidal;         ///< a basis of the stresses without divergence, by columns
+  LocalMatrix lifting;            ///< of each divergence the shortest stress, divergence · lifting = 1
 
   int stresses() const { return static_cast<int>(divergence.cols()); }
   int displacements() const { return static_cast<int>(divergence.rows()); }

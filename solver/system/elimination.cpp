@@ -29,47 +29,31 @@ struct Translation {
 
 }  // namespace
 
-SmallCholesky::SmallCholesky(const LocalMatrix& matrix)
-    : whole_(matrix), inverse_pivots_(whole_.matrixLLT().diagonal().cwiseInverse()) {}
-
-LocalVector SmallCholesky::solve(LocalVector b) const {
-  const LocalMatrix& l = whole_.matrixLLT();
-  const Eigen::Index n = b.size();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    b[j] *= inverse_pivots_[j];
-    for (Eigen::Index i = j + 1; i < n; ++i) b[i] -= l(i, j) * b[j];
-  }
-  for (Eigen::Index j = n - 1; j >= 0; --j) {
-    for (Eigen::Index i = j + 1; i < n; ++i) b[j] -= l(i, j) * b[i];
-    b[j] *= inverse_pivots_[j];
-  }
-  return b;
+Elimination::Elimination(const ElementMatrices& element, const Spaces& spaces)
+    : spaces_(spaces), coupling_(coupling_of(element, spaces)) {
+  const LocalMatrix &z = spaces.solenoidal, &m = element.compliance, m_z = m * z;
+  const LocalMatrix lifting = spaces.lifting.transpose(), lifted = lifting * m;
+  root_ = z.transpose();
+  Eigen::LLT<LocalMatrix>(LocalMatrix(z.transpose() * m_z)).matrixL().solveInPlace(root_);
+  p_ = root_.transpose() * root_;
+  q_ = lifting - lifted * p_;
+  w_inverse_ = lifted * q_.transpose();
 }
 
-Elimination::Elimination(const ElementMatrices& element, const Spaces& spaces)
-    : spaces_(spaces),
-      coupling_(coupling_of(element, spaces)),
-      compliance_(element.compliance),
-      lifted_(compliance_.whole().solve(spaces.divergence.transpose())),
-      displacement_(LocalMatrix(spaces.divergence * lifted_)) {}
-
 LocalMatrix Elimination::stiffness() const {
-  const LocalMatrix fluxes = coupling_ * lifted_;
-  const LocalMatrix flexible =
-      coupling_ * LocalMatrix(compliance_.whole().solve(LocalMatrix(coupling_.transpose())));
-  return flexible - fluxes * LocalMatrix(displacement_.whole().solve(LocalMatrix(fluxes.transpose())));
+  const LocalMatrix root = root_ * coupling_.transpose();
+  return root.transpose() * root;
 }
 
 LocalMatrix Elimination::coupling_load() const {
-  const LocalMatrix fluxes = coupling_ * lifted_;
-  return displacement_.whole().solve(LocalMatrix(fluxes.transpose())).transpose();
+  return coupling_ * q_.transpose();
 }
 
 /// M σ + Bᵀ u = a, B σ = b.
 LocalFields Elimination::solve(const LocalVector& a, const LocalVector& b) const {
   LocalFields fields;
-  fields.displacement = displacement_.solve(lifted_.transpose().lazyProduct(a) - b);
-  fields.stress = compliance_.solve(a) - lifted_.lazyProduct(fields.displacement);
+  fields.stress = p_.lazyProduct(a) + q_.transpose().lazyProduct(b);
+  fields.displacement = q_.lazyProduct(a) - w_inverse_.lazyProduct(b);
   return fields;
 }
 
@@ -80,8 +64,8 @@ LocalFields Elimination::recover(const LocalVector& coupling, const LocalVector&
   const Translation translation(coupling, spaces_);
   const LocalVector right = coupling_.transpose().lazyProduct(coupling - translation.traces);
   LocalFields fields = solve(right, -load);
-  // Near incompressibility W is badly conditioned; one correction brings the balance back to rounding and
-  // the volume's strain to its digits.
+  // Near incompressibility Zᵀ M Z is badly conditioned; one correction brings the volume's strain to its
+  // digits.
   const LocalFields correction =
       solve(right - strain(fields.stress) - spaces_.divergence.transpose().lazyProduct(fields.displacement),
             -load - spaces_.divergence.lazyProduct(fields.stress));
@@ -104,10 +88,10 @@ AugmentedElimination::AugmentedElimination(const ElementMatrices& element, const
       coupling_(coupling_of(element, spaces)),
       compliance_(element.compliance +
                   augmentation * b_.transpose() * LocalMatrix(element.displacement_mass.llt().solve(b_))),
-      lifted_(compliance_.whole().solve(b_.transpose())) {}
+      lifted_(compliance_.solve(b_.transpose())) {}
 
 LocalMatrix AugmentedElimination::stiffness() const {
-  return coupling_ * LocalMatrix(compliance_.whole().solve(LocalMatrix(coupling_.transpose())));
+  return coupling_ * LocalMatrix(compliance_.solve(coupling_.transpose()));
 }
 
 LocalMatrix AugmentedElimination::coupling() const {
@@ -119,7 +103,7 @@ LocalMatrix AugmentedElimination::divergence() const {
 }
 
 LocalVector AugmentedElimination::stress(const LocalVector& coupling, const LocalVector& w) const {
-  return compliance_.solve(coupling_.transpose().lazyProduct(coupling)) - lifted_.lazyProduct(w);
+  return compliance_.solve(coupling_.transpose() * coupling) - lifted_.lazyProduct(w);
 }
 
 }  // namespace signorini

@@ -13,36 +13,27 @@ struct LocalFields {
   LocalVector force;
 };
 
-/// L Lᵀ of a matrix so small that Eigen's way, which cuts triangular matrices into panels, takes longer than
-/// the few products of a solve.
-class SmallCholesky {
- public:
-  explicit SmallCholesky(const LocalMatrix& matrix);
-
-  LocalVector solve(LocalVector b) const;
-  /// For many right sides.
-  const Eigen::LLT<LocalMatrix>& whole() const { return whole_; }
-
- private:
-  Eigen::LLT<LocalMatrix> whole_;
-  LocalVector inverse_pivots_;  ///< divisions take long, one after the other
-};
-
 /// Eliminates stress σ and displacement u of one triangle from its part of Problem 4.1 in hybrid form,
 ///
 ///     M σ + Bᵀ u = Gᵀ c,    B σ = −F,
 ///
 /// for the coupling coefficients c = (m, γ): traces m in x and y components, and rotations γ. G = [E; −A],
 /// where E selects the fluxes, which come first (their functionals are the moments against the trace basis,
-/// so <τ_j n, m> = m_j), and A = (as τ, φ). With W = B M⁻¹ Bᵀ
+/// so <τ_j n, m> = m_j), and A = (as τ, φ). With a basis Z of the stresses without divergence and B B⁺ = 1
+/// (the null-space method: Benzi, Golub, Liesen 2005, section 6)
 ///
-///     G σ = K c − q,    K = G (M⁻¹ − M⁻¹ Bᵀ W⁻¹ B M⁻¹) Gᵀ,    q = Q F,    Q = G M⁻¹ Bᵀ W⁻¹.
+///     σ = P a + Qᵀ b,  u = Q a − W⁻¹ b    for   M σ + Bᵀ u = a,  B σ = b,
+///     P = Z (Zᵀ M Z)⁻¹ Zᵀ,    Q = B⁺ᵀ (1 − M P),    W⁻¹ = B⁺ᵀ M Qᵀ,
+///
+/// where B P = 0 and B Qᵀ = 1 whatever M is, so that products do as well as substitutions. Hence
+///
+///     G σ = K c − G Qᵀ F,    K = G P Gᵀ.
 class Elimination {
  public:
   Elimination(const ElementMatrices& element, const Spaces& spaces);
 
   LocalMatrix stiffness() const;      ///< K
-  LocalMatrix coupling_load() const;  ///< Q
+  LocalMatrix coupling_load() const;  ///< G Qᵀ
   /// The fields for given coupling and load F.
   LocalFields recover(const LocalVector& coupling, const LocalVector& load,
                       const StrainMoments& strain) const;
@@ -54,10 +45,9 @@ class Elimination {
   LocalFields solve(const LocalVector& a, const LocalVector& b) const;
 
   const Spaces& spaces_;
-  LocalMatrix coupling_;        ///< G
-  SmallCholesky compliance_;    ///< M
-  LocalMatrix lifted_;          ///< M⁻¹ Bᵀ
-  SmallCholesky displacement_;  ///< W
+  LocalMatrix coupling_;  ///< G
+  LocalMatrix root_;      ///< L⁻¹ Zᵀ with L Lᵀ = Zᵀ M Z
+  LocalMatrix p_, q_, w_inverse_;
 };
 
 /// The same with the displacement as data and the augmented compliance M_r = M + r Bᵀ V⁻¹ B (the form of
@@ -77,9 +67,9 @@ class AugmentedElimination {
 
  private:
   const LocalMatrix& b_;
-  LocalMatrix coupling_;      ///< G
-  SmallCholesky compliance_;  ///< M_r
-  LocalMatrix lifted_;        ///< M_r⁻¹ Bᵀ
+  LocalMatrix coupling_;                ///< G
+  Eigen::LLT<LocalMatrix> compliance_;  ///< M_r
+  LocalMatrix lifted_;                  ///< M_r⁻¹ Bᵀ
 };
 
 }  // namespace signorini
