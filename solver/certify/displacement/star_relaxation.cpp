@@ -116,19 +116,23 @@ class Stars {
   }
 
   const Eigen::LLT<Eigen::MatrixXd>& factor_of(const std::vector<int>& triangles) {
-    description_.clear();
+    constexpr std::size_t of_triangle = 1 + TriangleForms::kLocal + 3;
+    description_.resize(of_triangle * places_.size());
+    auto next = description_.begin();
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      description_.push_back(forms_.matrix_of[triangles[i]]);
-      for (const int unknown : places_[i].unknowns) description_.push_back(column_[unknown]);
-      for (const double sign : places_[i].edge_signs) description_.push_back(sign < 0);
+      *next++ = forms_.matrix_of[triangles[i]];
+      for (const int unknown : places_[i].unknowns) *next++ = column_[unknown];
+      for (const double sign : places_[i].edge_signs) *next++ = sign < 0;
     }
-    StarFactor& known = known_[boost::hash_range(description_.begin(), description_.end()) % known_.size()];
-    if (known.description == description_) return known.factor;
-    known.description = description_;
+    // Mostly that of the point before.
+    if (last_->description == description_) return last_->factor;
+    last_ = &known_[boost::hash_range(description_.begin(), description_.end()) % known_.size()];
+    if (last_->description == description_) return last_->factor;
+    last_->description = description_;
     matrix_.setZero(static_cast<Eigen::Index>(own_.size()), static_cast<Eigen::Index>(own_.size()));
     for (std::size_t i = 0; i < places_.size(); ++i) add_matrix(triangles[i], places_[i]);
-    known.factor.compute(matrix_);
-    return known.factor;
+    last_->factor.compute(matrix_);
+    return last_->factor;
   }
 
   void add_matrix(int t, const Place& place) {
@@ -144,11 +148,12 @@ class Stars {
   }
 
   void add_slope(int t, const Place& place) {
+    const Matrix& matrix = forms_.matrices[forms_.matrix_of[t]];
     FormVector x;
     for (int i = 0; i < x.size(); ++i) x[i] = sign(place, i) * x_[place.unknowns[i]];
-    const FormVector slope = forms_.slopes[t] + forms_.matrices[forms_.matrix_of[t]] * x;
     for (int i = 0; i < x.size(); ++i)
-      if (const int row = column_[place.unknowns[i]]; row >= 0) right_[row] -= sign(place, i) * slope[i];
+      if (const int row = column_[place.unknowns[i]]; row >= 0)
+        right_[row] -= sign(place, i) * (forms_.slopes[t][i] + matrix.col(i).dot(x));
   }
 
   const Mesh& mesh_;
@@ -161,6 +166,7 @@ class Stars {
   std::vector<Place> places_;       ///< of these triangles' functions
   std::vector<int> description_;
   std::array<StarFactor, 64> known_;
+  StarFactor* last_ = &known_[0];
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd right_, x_;
 };
