@@ -30,6 +30,23 @@ bool is_large(const MeshData& data) {
   return static_cast<std::int64_t>(count) > few_triangles;
 }
 
+/// What counts alone tell of a mesh that is not looked at.
+std::vector<Fault> faults_of_counts(const MeshData& data) {
+  const std::size_t corners = 3 * data.triangles.size();
+  std::size_t edges = 0;
+  for (const auto& [name, own] : data.boundary) edges += own.size();
+  std::vector<Fault> faults;
+  const auto check = [&](std::size_t count, const char* array, const char* what, const char* of_triangles) {
+    if (count > corners)
+      faults.push_back({data.file.empty() ? array : data.file,
+                        "has " + std::to_string(count) + what + ", more than " +
+                            std::to_string(data.triangles.size()) + " triangles have " + of_triangles});
+  };
+  check(data.points.size(), "/domain/points", " points", "corners");
+  check(edges, "/domain/boundary", " edges of the boundary", "sides");
+  return faults;
+}
+
 struct Area {
   double operator()(const Rectangle& rectangle) const { return rectangle.size.prod(); }
   double operator()(const Polygon& polygon) const { return area(polygon); }
@@ -55,7 +72,7 @@ struct FaultsOfShape {
   std::vector<Fault> operator()(const Polygon& polygon) const { return validate(polygon); }
 
   std::vector<Fault> operator()(const MeshData& data) const {
-    if (is_large(data)) return {};
+    if (is_large(data)) return faults_of_counts(data);
     try {
       import_mesh(data);
     } catch (const InvalidProblem& invalid) {

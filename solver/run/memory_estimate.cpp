@@ -55,8 +55,9 @@ Grid grid_of(const Problem& problem, double triangles, bool repeated) {
 /// larger than those of a grid, at most, as measured on combs.
 constexpr double kPanelsOfArms = 1.5, kStacksOfArms = 2.5;
 
-/// And a coarser mesh that shows the shape of the pieces has fewer of its triangles near local sizes.
-constexpr double kNearLocalSizes = 1.25;
+/// And a coarser mesh that shows the shape of the pieces has fewer of its triangles near local sizes, and
+/// other cuts, which matter where the factor is most of what there is.
+constexpr double kNearLocalSizes = 1.25, kOfOtherCuts = 1.1;
 
 FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, bool repeated) {
   if (sizes.pieces == nullptr || sizes.pieces->empty()) {
@@ -67,9 +68,12 @@ FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveS
     return made;
   }
   FactorBytes made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact, repeated);
-  if (!problem.mesh.sizes.empty() && sizes.pieces->triangles() < sizes.triangles) {
-    made.panels *= kNearLocalSizes;
-    made.stacks *= kNearLocalSizes;
+  if (std::holds_alternative<Polygon>(problem.domain) && sizes.pieces->triangles() < sizes.triangles) {
+    const double larger = !problem.mesh.sizes.empty() ? kNearLocalSizes
+                          : spaces.components == 2    ? kOfOtherCuts
+                                                      : 1;
+    made.panels *= larger;
+    made.stacks *= larger;
   }
   return made;
 }

@@ -422,6 +422,18 @@ TEST(Budget, ACurveIsInOneGroup) {
   }
 }
 
+/// Or more edges than its triangles have sides.
+TEST(Budget, AMeshOfManyPartsAndFewTrianglesIsNone) {
+  json mesh{{"type", "mesh"},
+            {"points", {{0, 0}, {1, 0}, {1, 1}, {0, 1}}},
+            {"triangles", {{0, 1, 2}, {0, 2, 3}}},
+            {"boundary", json::object()}};
+  for (int i = 0; i < 10'000; ++i) mesh["boundary"]["p" + std::to_string(i)] = {{0, 1}};
+  json problem = membrane_on(mesh, json::object());
+  problem["boundary"] = {{"all", {{"type", "fixed"}}}};
+  EXPECT_EQ(found_soon(problem), "/domain/boundary");
+}
+
 /// As many as are looked at, of which the boxes of all edges meet.
 TEST(Budget, ManySliversAreLeftToTheSolve) {
   for (const bool around_a_point : {false, true}) {

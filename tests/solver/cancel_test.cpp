@@ -10,6 +10,7 @@
 #include "problems/families.hpp"
 #include "problems/long_tests.hpp"
 #include "problems/membrane.hpp"
+#include "problems/sanitized.hpp"
 #include "problems/seconds_at_work.hpp"
 #include "run/study.hpp"
 
@@ -201,6 +202,26 @@ TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
     }
     EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << i;
   }
+}
+
+/// In the phase of the bound: a gap whose waves each edge of the contact has many of, and a load on patches.
+TEST(Cancel, IsHeardWhileTheDataOfTheBoundAreEnclosed) {
+  Problem waves = membrane_on(Rectangle{}, MeshRequest(Divisions{2000, 2}), {"left"});
+  waves.scheme = Scheme::nonconforming;
+  waves.boundary["bottom"] = Contact{problems::formula("0.01 * sin(1e4 * x)^2")};
+  Problem patches = membrane_on(Rectangle{}, MeshRequest(Divisions{1, 1}, Pattern::crossed), {"left"});
+  patches.body = Field(problems::formula("(x - 0.5)^2 + (y - 0.5)^2 < 0.04 ? 1e6 : 1"));
+  patches.boundary["bottom"] = Contact{Field(0.01)};
+  for (const Problem& problem : {waves, patches})
+    for (const double after : {0.25, 0.4}) {
+      const double moment = seconds_at_work() + after;
+      CancelsAt observer(moment);
+      try {
+        solves(problem)(observer);
+      } catch (const Cancelled&) {
+      }
+      EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << after;
+    }
 }
 
 /// The data of a triangle may take a tenth of a millisecond: so many triangles are within a quarter of a

@@ -757,6 +757,16 @@ TEST_P(Memory, OfTinyHolesFarFromEachOther) {
   }
 }
 
+/// Of which a coarser mesh shows the shape, but not the cuts.
+TEST_P(Memory, OfAnAngle) {
+  Problem angle = in_polygon(elastic(GetParam(), 1, 1), 0.0615);
+  angle.domain = Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
+                         {},
+                         {"bottom", "right", "right", "top", "top", "left"}};
+  angle.boundary = {{"left", Fixed{}}, {"bottom", Contact{Field(0.01)}}, {"right", Roller{}}};
+  expect_bound(angle);
+}
+
 /// Those who watch a solve keep its history as it does.
 struct Chronicler : Observer {
   void iterated(const Iteration& iteration) override { history.push_back(iteration); }

@@ -35,10 +35,13 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, c
   if (components_ == 2) follow_traces();
   set_middles(coupling);
   meet_supports();
-  find_followed_gaps();
+  find_followed_gaps(progress);
   CellBudget budget{kCellsOfGaps, &progress};
   lower_points(budget);
-  for (const ContactEdge& contact : discrete.clearance.edges) meet(contact, budget);
+  for (const ContactEdge& contact : discrete.clearance.edges) {
+    progress.check();
+    meet(contact, budget);
+  }
 }
 
 void AdmissibleDisplacement::relax(const Eigen::VectorXd& work, int steps, Progress& progress) {

@@ -122,7 +122,7 @@ class AdmissibleDisplacement {
   void admit(int point, std::vector<PointConstraint> constraints);
   void meet_supports();
   void follow_traces();
-  void find_followed_gaps();
+  void find_followed_gaps(Progress& progress);
   /// The clearance is 0 at both ends, and a polynomial is near the gap between them.
   bool follows_gap(const ContactEdge& contact) const;
   bool exceeds_gap(const ContactEdge& contact) const;

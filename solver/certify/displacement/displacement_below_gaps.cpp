@@ -44,8 +44,9 @@ void AdmissibleDisplacement::meet(const ContactEdge& contact, CellBudget& budget
 
 /// Where a polynomial is off by more than the gap differs from a straight line, as where it has many waves on
 /// an edge, to stay below the gap is better than to follow it.
-void AdmissibleDisplacement::find_followed_gaps() {
+void AdmissibleDisplacement::find_followed_gaps(Progress& progress) {
   for (const ContactEdge& contact : discrete_.clearance.edges) {
+    progress.check();
     if (clearance_[contact.rows[0]] > 0 || clearance_[contact.rows[1]] > 0) continue;
     const Field& own = gap(contact);
     const EdgeLine line(discrete_.mesh, contact.edge);
