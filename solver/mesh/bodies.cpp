@@ -43,9 +43,10 @@ std::vector<std::vector<int>> bodies(const std::vector<std::array<int, 3>>& tria
     for (int i = 0; i < 3; ++i) {
       const auto sides = edges.between({triangles[triangle][i], triangles[triangle][(i + 1) % 3]});
       // Of thousands that have one edge each needs only those next to it in the table.
-      const auto own = std::ranges::equal_range(sides, triangle, {}, &TriangleEdge::triangle);
-      if (own.begin() != sides.begin()) visit(std::prev(own.begin())->triangle);
-      if (own.end() != sides.end()) visit(own.end()->triangle);
+      const auto own = std::ranges::lower_bound(sides, triangle, {}, &TriangleEdge::triangle);
+      const auto next = std::ranges::upper_bound(sides, triangle, {}, &TriangleEdge::triangle);
+      if (own != sides.begin()) visit(std::prev(own)->triangle);
+      if (next != sides.end()) visit(next->triangle);
     }
   });
 }
