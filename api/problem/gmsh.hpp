@@ -13,9 +13,9 @@ namespace signorini::api {
 /// Throws InvalidProblem at `/domain/msh` with the line for what is no such file, and for other elements
 /// than points, lines and triangles of the first order, a z that is not constant, and nodes that do not
 /// exist, and for curves in several physical groups, for a line is in one part. A constant z other than 0 is
-/// left out, and noted. The partitions that elements of version 2.2
-/// belong to do not matter; version 4.1 has other entities in a partitioned mesh, which is refused. Whether
-/// the triangles form a mesh is for import_mesh to see.
+/// left out, and noted. The partitions that elements of version 2.2 belong to do not matter; version 4.1 has
+/// other entities in a partitioned mesh, which is refused. Whether the triangles form a mesh is for
+/// import_mesh to see.
 MeshData parse_gmsh(std::string_view text);
 
 }  // namespace signorini::api

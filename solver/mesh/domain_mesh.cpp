@@ -24,17 +24,19 @@ std::vector<Fault> validate(const Adaptive& goal) {
   return faults;
 }
 
-bool is_large(const MeshData& data) {
-  std::size_t count = data.triangles.size();
+std::size_t edges_of_boundary(const MeshData& data) {
+  std::size_t count = 0;
   for (const auto& [name, edges] : data.boundary) count += edges.size();
-  return static_cast<std::int64_t>(count) > few_triangles;
+  return count;
+}
+
+bool is_large(const MeshData& data) {
+  return static_cast<std::int64_t>(data.triangles.size() + edges_of_boundary(data)) > few_triangles;
 }
 
 /// What counts alone tell of a mesh that is not looked at.
 std::vector<Fault> faults_of_counts(const MeshData& data) {
   const std::size_t corners = 3 * data.triangles.size();
-  std::size_t edges = 0;
-  for (const auto& [name, own] : data.boundary) edges += own.size();
   std::vector<Fault> faults;
   const auto check = [&](std::size_t count, const char* array, const char* what, const char* of_triangles) {
     if (count > corners)
@@ -43,7 +45,7 @@ std::vector<Fault> faults_of_counts(const MeshData& data) {
                             std::to_string(data.triangles.size()) + " triangles have " + of_triangles});
   };
   check(data.points.size(), "/domain/points", " points", "corners");
-  check(edges, "/domain/boundary", " edges of the boundary", "sides");
+  check(edges_of_boundary(data), "/domain/boundary", " edges of the boundary", "sides");
   return faults;
 }
 

@@ -24,9 +24,10 @@ void Progress::enter(Phase phase) {
   check();
 }
 
+/// One that is completed again beyond the limit gets no more time.
 void Progress::found() {
-  const bool was_in_time = time_left_to_iterate() > 0;
-  if (!found_ || was_in_time) found_ = seconds();
+  const bool is_in_time = time_left_to_iterate() > 0;
+  if (!found_ || is_in_time) found_ = seconds();
 }
 
 void Progress::check() {

@@ -31,10 +31,11 @@ struct Translation {
 
 Elimination::Elimination(const ElementMatrices& element, const Spaces& spaces)
     : spaces_(spaces), coupling_(coupling_of(element, spaces)) {
-  const LocalMatrix &z = spaces.solenoidal, &m = element.compliance, m_z = m * z;
+  const LocalMatrix &z = spaces.solenoidal, &m = element.compliance;
+  const LocalMatrix m_z = m * z, form = z.transpose() * m_z;
   const LocalMatrix lifting = spaces.lifting.transpose(), lifted = lifting * m;
   root_ = z.transpose();
-  Eigen::LLT<LocalMatrix>(LocalMatrix(z.transpose() * m_z)).matrixL().solveInPlace(root_);
+  Eigen::LLT<LocalMatrix>(form).matrixL().solveInPlace(root_);
   p_ = root_.transpose() * root_;
   q_ = lifting - lifted * p_;
   w_inverse_ = lifted * q_.transpose();

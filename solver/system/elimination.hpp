@@ -46,7 +46,7 @@ class Elimination {
 
   const Spaces& spaces_;
   LocalMatrix coupling_;  ///< G
-  LocalMatrix root_;      ///< L⁻¹ Zᵀ with L Lᵀ = Zᵀ M Z
+  LocalMatrix root_;  ///< L⁻¹ Zᵀ with L Lᵀ = Zᵀ M Z: K is a square of it, and so never indefinite
   LocalMatrix p_, q_, w_inverse_;
 };
 

@@ -184,6 +184,17 @@ Field intricate() {
   return problems::formula(text);
 }
 
+/// The run ends soon after so many seconds of work.
+void expect_heard(const Run& run, double after) {
+  const double moment = seconds_at_work() + after;
+  CancelsAt observer(moment);
+  try {
+    run(observer);
+  } catch (const Cancelled&) {
+  }
+  EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25);
+}
+
 TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
   const Problem simple = membrane_on(Rectangle{}, MeshRequest(Divisions{4, 4}), {"left"});
   Problem load = simple, stiffness = simple, traction = simple;
@@ -191,16 +202,10 @@ TEST(Cancel, IsHeardWhileAFormulaIsEnclosed) {
   stiffness.material = MembraneStiffness::isotropic(intricate());
   traction.boundary["right"] = Traction{VectorField(intricate())};
   const Variation swept{"", load.body, simple.boundary, "swept"};
-  const std::vector<std::function<void(Observer&)>> runs{solves(load), solves(stiffness), solves(traction),
-                                                         solves(simple, {}, {swept})};
+  const std::vector runs{solves(load), solves(stiffness), solves(traction), solves(simple, {}, {swept})};
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const double moment = seconds_at_work() + 0.05;
-    CancelsAt observer(moment);
-    try {
-      runs[i](observer);
-    } catch (const Cancelled&) {
-    }
-    EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << i;
+    SCOPED_TRACE(i);
+    expect_heard(runs[i], 0.05);
   }
 }
 
@@ -214,13 +219,8 @@ TEST(Cancel, IsHeardWhileTheDataOfTheBoundAreEnclosed) {
   patches.boundary["bottom"] = Contact{Field(0.01)};
   for (const Problem& problem : {waves, patches})
     for (const double after : {0.25, 0.4}) {
-      const double moment = seconds_at_work() + after;
-      CancelsAt observer(moment);
-      try {
-        solves(problem)(observer);
-      } catch (const Cancelled&) {
-      }
-      EXPECT_LT(seconds_at_work() - moment, sanitized ? 5 : 0.25) << after;
+      SCOPED_TRACE(after);
+      expect_heard(solves(problem), after);
     }
 }
 

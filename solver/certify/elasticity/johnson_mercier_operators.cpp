@@ -307,6 +307,7 @@ template class JohnsonMercierFields<1>;
 template class JohnsonMercierFields<Eigen::Dynamic>;
 template struct JohnsonMercierOperators<1>;
 template struct JohnsonMercierOperators<Eigen::Dynamic>;
+
 JohnsonMercierNorms::JohnsonMercierNorms(const JohnsonMercierRule& rule, const AffineMap& map,
                                          const SymmetricLaw& law) {
   constexpr int data = JohnsonMercier::kData, displacement = 12;
