@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "../problems/json_problems.hpp"
+#include "../problems/no_cache.hpp"
 #include "api/problem/problem_json.hpp"
 #include "faults_of.hpp"
 #include "solve.hpp"
@@ -25,11 +26,6 @@ json block(int divisions = 4) {
   problem["material"] = {{"young", 1}, {"poisson", 0.3}};
   return problem;
 }
-
-struct NoCache : OperatorCache {
-  std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-  bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
-};
 
 /// Both say the same; answers what.
 std::vector<std::string> agreed(const json& problem) {

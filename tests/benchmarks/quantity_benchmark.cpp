@@ -8,6 +8,7 @@
 
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
+#include "problems/no_cache.hpp"
 #include "problems/seconds_at_work.hpp"
 #include "run/certified.hpp"
 #include "run/condensed_problem.hpp"
@@ -48,11 +49,6 @@ double median(std::vector<double> all) {
 }
 
 const Settings exactly{ActiveSet{}, {}};
-
-struct NoCache : OperatorCache {
-  std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-  bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
-};
 
 /// Shows the operator of a solve.
 struct Last : NoCache {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../problems/no_cache.hpp"
 #include "../problems/sanitized.hpp"
 #include "example_problems.hpp"
 #include "solve.hpp"
@@ -23,11 +24,7 @@ Ending run_within(double bytes, const SolveFunction& solve) {
 }
 
 Solution solve_alone(const api::Request& request, Observer& observer) {
-  class Nowhere : public OperatorCache {
-   public:
-    std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-    bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
-  } nowhere;
+  NoCache nowhere;
   return solve_request(request, observer, nowhere);
 }
 

@@ -10,6 +10,7 @@
 #include "problems/families.hpp"
 #include "problems/long_tests.hpp"
 #include "problems/membrane.hpp"
+#include "problems/no_cache.hpp"
 #include "problems/sanitized.hpp"
 #include "problems/seconds_at_work.hpp"
 #include "run/study.hpp"
@@ -89,11 +90,7 @@ using Run = std::function<void(Observer&)>;
 
 Run solves(const Problem& problem, const Settings& settings = {}, const std::vector<Variation>& sweep = {}) {
   return [=](Observer& observer) {
-    class Nowhere : public OperatorCache {
-     public:
-      std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-      bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
-    } nowhere;
+    NoCache nowhere;
     solve(problem, sweep, settings, observer, nowhere);
   };
 }

@@ -5,6 +5,7 @@
 
 #include "problems/elasticity.hpp"
 #include "problems/membrane.hpp"
+#include "problems/no_cache.hpp"
 #include "solve.hpp"
 
 namespace signorini::far_gap_test {
@@ -91,10 +92,7 @@ TEST(FarGap, InASweep) {
     };
     const std::vector<Variation> sweep{variation(1e-5), variation(1e9), variation(1e-5)};
     const std::vector<double> gaps{1e-5, 1e9, 1e-5};
-    struct NoCache : OperatorCache {
-      std::shared_ptr<const Operator> find(const std::string&) override { return nullptr; }
-      bool keep(const std::string&, std::shared_ptr<const Operator>) override { return false; }
-    } cache;
+    NoCache cache;
     Observer observer;
     const Solution solution = solve(problem, sweep, {ActiveSet{}, {}}, observer, cache);
     ASSERT_EQ(solution.sweep.size(), 3u);
