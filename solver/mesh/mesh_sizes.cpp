@@ -57,19 +57,28 @@ double halvings(double length, double longest) {
   return length <= longest ? 1 : std::exp2(std::ceil(std::log2(length / longest)));
 }
 
+/// The cotangent of the sharpest angle of a triangle, 20.7 degrees.
+constexpr double kSharpestAngle = 2.65;
+
 /// What becomes of a stretch of the boundary: the mesher halves it until its pieces are no longer than the
-/// size, and no point across the domain lies in the circle around one, or nearly.
+/// size, no point across the domain lies in the circle around one, or nearly, and no triangle across is too
+/// sharp.
 struct Pieces {
   Pieces(const NarrowPlaces::Stretch& stretch, double size) {
-    const double longest = std::min(size * (1 + 1e-9), 1.9 * stretch.width);
-    count = halvings(stretch.length, longest);
-    length = stretch.length / count;
+    const double longest = std::min({size * (1 + 1e-9), 1.9 * stretch.width, kSharpestAngle * stretch.least});
+    const double of_part = halvings(stretch.length, longest);
+    count = of_part * stretch.parts;
+    length = stretch.length / of_part;
     reach_across = length * length + stretch.width * stretch.width <= size * size;
-    constexpr double nearly = 0.7, layers = 3;  // of triangles, at least, that have others beside them
-    if (length > nearly * size && stretch.width > layers * length) count *= kCutOnceMore;
+    constexpr double nearly = 0.7, one_layer = 1.5, layers = 3;  // of triangles, at most and at least
+    if (!reach_across && stretch.width <= one_layer * length)
+      cuts = 2;  // for the ways across are too long
+    else if (length > nearly * size && stretch.width > layers * length)
+      count *= kCutOnceMore;
   }
 
   double count, length;
+  double cuts = 1;    ///< into so many is each cut whose triangles are counted as if it was not
   bool reach_across;  ///< one triangle does
 };
 
@@ -103,14 +112,36 @@ struct Tip {
   std::array<int, 2> edges;
   double reach, slope;  ///< how far, and by how much the domain grows wider with the distance
 
+  /// Sines of the angle: from here on its triangle is as good as any other, and from here on those beside it.
+  static constexpr double kBlunt = 0.62, kSharp = 0.5;
+  static constexpr double kTrianglesBehind = 1;  ///< at each edge, the one that fills it
+
+  /// How often each edge is cut behind its triangle, as measured.
+  double cuts_behind() const { return slope < 0.38 ? 3 : slope < 0.45 ? 1 : 0; }
+
   /// The pieces of each edge in there if the triangle may not reach so far.
   double pieces(double size, const std::vector<LocalSize>& locals) const {
+    if (slope >= kSharp) return 0;
     double filled = std::min(reach, size);
     for (const LocalSize& local : locals)
       filled = std::min(filled, std::max(local.size, (local.at - at).norm() - local.radius));
     constexpr double by_width = 0.75;  // as measured
     return by_width * std::log(std::min(reach, std::max(filled, size / slope)) / filled) / slope;
   }
+};
+
+/// A short edge between two longer ones that lie opposite each other.
+struct Floor {
+  double length;
+  std::array<int, 2> walls;
+
+  /// How often a wall is cut for it, or as much of it as one triangle may have: as measured, up to where it
+  /// is known anyway how long narrow places are cut.
+  double cuts(double wall) const {
+    const double times = wall / length;
+    return times < kLong ? 0 : times < 2 * kLong ? 1 : times < 4 * kLong ? 2 : times < 32 * kLong ? 3 : 0;
+  }
+  static constexpr double kLong = 2;
 };
 
 /// Of so many pairs of discs and edges it is looked how much of a disc lies in the domain: some ten
@@ -152,10 +183,12 @@ class PredictedSizes::OfPolygon {
     for (NarrowPlaces::Stretch& stretch : stretches_) {
       stretch.length *= frame.extent();
       stretch.width *= frame.extent();
+      stretch.least *= frame.extent();
     }
     for (int ring = 0; ring < rings_.size(); ++ring)
       turns_.push_back(rings_.has_domain_on_the_left(ring) ? 1 : -1);
     find_tips();
+    find_floors();
     clusters_ = clusters(rings_.points);
   }
 
@@ -170,9 +203,8 @@ class PredictedSizes::OfPolygon {
       if (rings_.circle[edge] >= 0) chords[part] += pieces;
     };
     for (const NarrowPlaces::Stretch& stretch : stretches_) {
-      Pieces pieces(stretch, size);
-      pieces.count *= stretch.parts;
-      add(stretch.edge, pieces.count);
+      const Pieces pieces(stretch, size);
+      add(stretch.edge, pieces.cuts * pieces.count);
       if (pieces.reach_across)
         across += kTrianglesAcross * pieces.count;
       else
@@ -182,9 +214,15 @@ class PredictedSizes::OfPolygon {
     }
     for (const Tip& tip : tips_)
       for (const int edge : tip.edges) {
-        const double pieces = tip.pieces(size, request.sizes);
+        const double pieces = tip.pieces(size, request.sizes) + tip.cuts_behind();
         add(edge, pieces);
-        across += kTrianglesAcross * pieces;
+        across += kTrianglesAcross * pieces + Tip::kTrianglesBehind;
+      }
+    for (const Floor& floor : floors_)
+      for (const int wall : floor.walls) {
+        const double cuts = floor.cuts(std::min(size, length_of(wall)));
+        add(wall, cuts);
+        across += kTrianglesAcross * cuts;
       }
     triangles += across + by_area(std::max(0., area_ - along_it), size);
     add_edges_around(request.sizes, size, add);
@@ -208,15 +246,35 @@ class PredictedSizes::OfPolygon {
   static double by_area(double area, double edge) { return kTrianglesByArea * area / (edge * edge); }
 
   void find_tips() {
-    constexpr double sharp = 0.5;
     for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
       const int behind = rings_.next(e);
       const auto [from, at] = rings_.edge(e);
       const Point& to = rings_.points[rings_.next(behind)];
       const double own = (from - at).norm(), other = (to - at).norm();
       const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other);
-      if (sine > 0 && sine < sharp && (from - at).dot(to - at) > 0)
+      if (sine > 0 && sine < Tip::kBlunt && (from - at).dot(to - at) > 0)
         tips_.push_back({at, {e, behind}, 0.5 * std::min(own, other), sine});
+    }
+  }
+
+  double length_of(int edge) const {
+    const auto [from, to] = rings_.edge(edge);
+    return (to - from).norm();
+  }
+
+  void find_floors() {
+    constexpr double widest = -0.4;  // cosine of the angle with a wall
+    for (int wall = 0; wall < static_cast<int>(rings_.points.size()); ++wall) {
+      const int floor = rings_.next(wall), opposite = rings_.next(floor);
+      const double length = length_of(floor);
+      const auto rises = [&](const Segment& one, const Segment& other) {
+        const Vector out = one[0] - one[1], along = other[1] - other[0];
+        return turns_[rings_.ring[wall]] * twice_area(one[1], other[1], one[0]) > 0 &&
+               out.dot(along) > widest * out.norm() * along.norm();
+      };
+      if (std::min(length_of(wall), length_of(opposite)) > Floor::kLong * length &&
+          rises(rings_.edge(wall), rings_.edge(floor)) && rises(rings_.edge(floor), rings_.edge(opposite)))
+        floors_.push_back({length, {wall, opposite}});
     }
   }
 
@@ -275,6 +333,7 @@ class PredictedSizes::OfPolygon {
   std::vector<double> turns_;  ///< of the rings: by which the area inside counts for the domain
   std::vector<NarrowPlaces::Stretch> stretches_;
   std::vector<Tip> tips_;
+  std::vector<Floor> floors_;
   std::vector<Cluster> clusters_;
 };
 

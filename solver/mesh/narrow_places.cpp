@@ -114,6 +114,18 @@ class Count {
     return most;
   }
 
+  /// The distance of the ends of a piece from the edge that is nearest to its middle, or that of the middle.
+  double least_width(const Piece& piece, int nearest, double of_middle) const {
+    const Edge& edge = edges_[piece.edge];
+    double least = of_middle;
+    for (const double share : {piece.begin, piece.end}) {
+      const Point end = edge.begin + share * edge.way;
+      const Vector from_nearest = edges_[nearest].to(end);
+      if (is_across(end, piece.edge, nearest, from_nearest)) least = std::min(least, from_nearest.norm());
+    }
+    return least;
+  }
+
   void keep(const NarrowPlaces::Stretch& stretch) {
     const auto about = [](double width) { return std::floor(8 * std::log2(width)); };
     NarrowPlaces::Stretch* const last = found_.stretches.empty() ? nullptr : &found_.stretches.back();
@@ -123,6 +135,7 @@ class Count {
       return;
     }
     last->width = std::min(last->width, stretch.width);
+    last->least = std::min(last->least, stretch.least);
     ++last->parts;
   }
 
@@ -148,7 +161,9 @@ class Count {
     if (own <= steps * width) {
       const bool is_narrow = width < whole;
       if (is_narrow) found_.triangles += own / width;
-      keep({piece.edge, own, is_narrow ? width : std::numeric_limits<double>::infinity(), 1});
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      keep({piece.edge, own, is_narrow ? width : infinity,
+            is_narrow ? least_width(piece, nearest, width) : infinity, 1});
       return;
     }
     if (found_.triangles >= enough_) return;

@@ -18,6 +18,7 @@ struct NarrowPlaces {
   struct Stretch {
     int edge;
     double length, width;  ///< of each part; infinitely wide if nothing is closer than the edge is long
+    double least;          ///< the width at its narrower end
     int parts;
   };
 

@@ -103,6 +103,44 @@ TEST(NarrowPlaces, CutTheBoundaryToo) {
   }
 }
 
+/// A strip whose floor rises and falls, `teeth` times; each flank takes so much of a tooth's width.
+Polygon toothed(int teeth, double height, double foot, double flank) {
+  Polygon polygon;
+  const double width = 2. / teeth, top = 1 - foot - 2 * flank;
+  for (int i = 0; i < teeth; ++i) {
+    const double at = i * width;
+    polygon.vertices.push_back({at, 0});
+    if (foot > 0) polygon.vertices.push_back({at + foot * width, 0});
+    polygon.vertices.push_back({at + (foot + flank) * width, height});
+    if (top > 0) polygon.vertices.push_back({at + (foot + flank + top) * width, height});
+  }
+  polygon.sides.assign(polygon.vertices.size() + 1, "floor");
+  for (const Point& corner : {Point(2, 0), Point(2, 1), Point(0, 1)}) polygon.vertices.push_back(corner);
+  for (const char* const side : {"right", "left"}) polygon.sides.push_back(side);
+  return polygon;
+}
+
+/// Found from outside: between them the mesher cuts for the angles of its triangles, more often than their
+/// width asks for.
+TEST(NarrowPlaces, BetweenTeethAreCutForTheirAngles) {
+  const auto expect = [](const Polygon& polygon, double size) {
+    const Domain domain = polygon;
+    const MeshRequest request(LargestEdge{size});
+    const MeshSizes foreseen = PredictedSizes(domain)(request),
+                    made = sizes_of(make_domain_mesh(domain, request));
+    EXPECT_GE(1.02 * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
+    EXPECT_GE(1.15 * static_cast<double>(foreseen.edges_of_parts()),
+              static_cast<double>(made.edges_of_parts()));
+  };
+  for (const double size : {0.05, 0.2, 0.5})
+    for (double steepness = 1; steepness < 40; steepness *= 1.25) {
+      SCOPED_TRACE(std::to_string(size) + ", steepness " + std::to_string(steepness));
+      expect(toothed(120, steepness / 120, 0, 0.5), size);
+      expect(toothed(80, 0.4 * steepness / 80, 0.3, 0.2), size);
+      expect(toothed(60, 0.4 * steepness / 60, 0.45, 0.02), size);
+    }
+}
+
 /// Two discs in a plate, or a disc and a side, so far from each other.
 Polygon plate_with(const std::vector<std::pair<Point, double>>& discs) {
   Polygon plate{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, {}, {}};
