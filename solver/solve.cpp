@@ -6,6 +6,8 @@
 
 #include "progress/helpers.hpp"
 #include "progress/memory_meter.hpp"
+#include "progress/overflow.hpp"
+#include "result/in_range.hpp"
 #include "run/adapt.hpp"
 #include "run/certified.hpp"
 #include "run/condensed_problem.hpp"
@@ -98,7 +100,9 @@ class SweepOver {
     try {
       progress.check();  // of thousands that come too late none begins
       entry = entries_.solve(variation, progress, show);
+      if (!is_in_range(entry)) throw Overflow();
     } catch (const SolveError& failure) {
+      entry = {};
       entry.error = failure.what();
     } catch (const NotPositiveDefinite& failure) {
       entry.error = in_words(failure);

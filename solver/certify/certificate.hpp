@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -8,7 +7,7 @@
 #include "certify/pair_sums.hpp"
 #include "fem/discretization.hpp"
 #include "progress/progress.hpp"
-#include "result/solution.hpp"
+#include "result/in_range.hpp"
 
 namespace signorini {
 
@@ -26,7 +25,7 @@ struct Certificate {
   std::optional<PairSums> sums;              ///< of that pair
   std::vector<EnclosedQuantity> quantities;  ///< that the problem asks for, if there is a bound
 
-  bool has_bound() const { return std::isfinite(bound.value) && std::isfinite(bound.energy_upper); }
+  bool has_bound() const { return is_in_range(bound); }
 };
 
 /// Bounds the error of a discrete solution by an admissible displacement v and a stress σ* in equilibrium

@@ -77,7 +77,7 @@ Eigen::VectorXd exchange(const ContactComplement& contact, std::vector<int> wron
       if (closing) next[*closing] = true;
       found = solve_for_open(contact, next, progress);
     }
-    if (!found) throw SolveError("the contact problem is singular: contact holds the body only just");
+    if (!found) throw SingularContact();
     closed = next;
     return *found;
   }

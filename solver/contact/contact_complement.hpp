@@ -2,9 +2,19 @@
 
 #include <Eigen/Core>
 
+#include "progress/observer.hpp"
 #include "system/symmetric_product.hpp"
 
 namespace signorini {
+
+/// S is singular but for rounding.
+struct SingularContact : SolveError {
+  SingularContact()
+      : SolveError(
+            "nothing but contact holds the body, and only just, so that rounding decides where it is: hold "
+            "it "
+            "(fixed, roller), or bring its moduli, gaps and loads closer together") {}
+};
 
 /// The contact problem alone, everything else eliminated: find λ ≥ 0 with w p = S λ − c ≥ 0, λ p = 0, for
 /// the clearances λ and pressures p of the contact unknowns. It is the minimum of ½ λᵀ S λ − cᵀ λ over

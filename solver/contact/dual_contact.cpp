@@ -88,7 +88,7 @@ class LinearContact {
 DualContact dual_contact(const ContactComplement& base, const Eigen::VectorXd& clearance,
                          const Eigen::VectorXd& c, double factor, Progress& progress) {
   LinearContact linear(base, clearance, c, progress);
-  if (!linear.solve()) throw SolveError("the contact problem is singular: contact holds the body only just");
+  if (!linear.solve()) throw SingularContact();
   for (int tries = 0; tries < kTries && linear.hold(factor); ++tries)
     if (!linear.solve()) break;
   return linear.take();

@@ -17,7 +17,7 @@ struct DualContact {
 /// `c`: forces that would open the contact of the dual problem. Next to where contact begins its force grows
 /// without bound beside that of the base: it is held at `factor` times that, though that opens it.
 ///
-/// Throws SolveError if contact holds the body only just.
+/// Throws SingularContact.
 DualContact dual_contact(const ContactComplement& base, const Eigen::VectorXd& clearance,
                          const Eigen::VectorXd& c, double factor, Progress& progress);
 

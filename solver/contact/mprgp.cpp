@@ -152,7 +152,7 @@ class Iterate {
     for (Eigen::Index i = 0; i < g_.size(); ++i)
       direction_[i] = lambda_[i] > 0 ? 0 : std::max(-g_[i], 0.) / diagonal_[i];
     multiply_direction();
-    if (is_flat()) throw SolveError(kSingular);
+    if (is_flat()) throw SingularContact();
     move(-g_.dot(direction_) / curvature_);
     begin_anew();
   }
@@ -172,7 +172,7 @@ class Iterate {
     if (descent <= 0) return true;  // nothing is left to gain
     multiply_direction();
     const double most = feasible_step();
-    if (is_flat() && std::isinf(most)) throw SolveError(kSingular);
+    if (is_flat() && std::isinf(most)) throw SingularContact();
     if (is_flat() || descent > most * curvature_) {
       move(most);
       return false;
@@ -231,8 +231,6 @@ class Iterate {
 
   static constexpr double kRounding = 1e-13;
   static constexpr double kSmallPart = 1e-4;
-  static constexpr const char* kSingular =
-      "the contact problem is singular: contact holds the body only just";
 
   const ContactComplement& contact_;
   Progress& progress_;

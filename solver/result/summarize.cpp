@@ -15,6 +15,7 @@
 #include "fem/per_shape.hpp"
 #include "fem/reconstruct.hpp"
 #include "flux_functional.hpp"
+#include "in_range.hpp"
 #include "outcome.hpp"
 #include "progress/overflow.hpp"
 #include "strain_notes.hpp"
@@ -185,12 +186,6 @@ std::vector<std::string> warnings(const Problem& problem, const Solution& soluti
           ": the error may be larger than the stress itself, and this answer is worth nothing; " + remedy};
 }
 
-void refuse_overflow(const Solution& solution) {
-  const bool finite = std::isfinite(solution.summary.energy) && solution.stress.allFinite() &&
-                      solution.displacement.allFinite() && std::isfinite(solution.summary.contact.force);
-  if (!finite) throw Overflow();
-}
-
 }  // namespace
 
 bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBound& bound) {
@@ -251,7 +246,7 @@ Solution describe(const Discretization& discrete, const Fields& fields, const Se
   summary.contact = sum_up(solution.contact);
   summary.timings = timings(progress);
   solution.history = progress.take_history();
-  refuse_overflow(solution);
+  if (!is_in_range(solution)) throw Overflow();
   return solution;
 }
 

@@ -1,6 +1,7 @@
 #include "run/certified.hpp"
 
 #include "certify/reactions/reactions.hpp"
+#include "result/in_range.hpp"
 
 namespace signorini {
 namespace {
@@ -52,6 +53,10 @@ void add_certified(const Problem& problem, const Settings& settings, Progress& p
     return;
   } catch (const NotPositiveDefinite& failure) {
     certified.unmet.push_back(std::string("it is not known what supports take: ") + failure.what());
+  }
+  if (!is_in_range(certified)) {
+    certified.supports.clear();
+    certified.unmet.push_back("what supports take leaves the range of double precision");
   }
   summary.certified = std::move(certified);
   const double seconds = progress.seconds() - begin;

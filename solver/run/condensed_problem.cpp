@@ -9,6 +9,7 @@
 #include "contact/complete.hpp"
 #include "contact/mprgp.hpp"
 #include "contact/rigid_motions.hpp"
+#include "progress/overflow.hpp"
 #include "run/quantities.hpp"
 #include "system/hybrid_system.hpp"
 
@@ -47,6 +48,7 @@ bool is_far(const ClearanceSpace& space, double displacement) {
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const StateOfBody& body, const Eigen::VectorXd& start) {
   if (contact.size() == 0) return {};
+  if (!contact.s.diagonal().allFinite() || !contact.c.allFinite()) throw Overflow();
   if (const auto* exact = std::get_if<ActiveSet>(&method))
     return active_set(contact, *exact, progress, start);
   return mprgp(contact, std::get<Mprgp>(method), progress, body, start);
@@ -97,7 +99,9 @@ Fields CondensedProblem::find(const Method& method, Progress& progress, const Ei
     const bool is_free = reach > 0 && !space.is_touched_too_early(fields.clearance);
     const double displacement = fields.displacement.lpNorm<Eigen::Infinity>();
     if (is_free || displacement == 0 || reach >= whole) return fields;
-    reach = kNear * std::max(reach, displacement);
+    const double farther = kNear * std::max(reach, displacement);
+    if (!fields.displacement.allFinite() || !(farther > reach)) throw Overflow();
+    reach = farther;
   }
 }
 

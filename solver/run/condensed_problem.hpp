@@ -11,8 +11,8 @@
 namespace signorini {
 
 /// The clearances of the contact problem by a method that works on it alone: not by the paper's form. It
-/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `body` see
-/// mprgp().
+/// begins from the start, clearances ≥ 0, or from 0 if there is none. For `body` see mprgp(). Throws
+/// Overflow, and what the method throws.
 ContactResult find_clearance(const ContactComplement& contact, const Method& method, Progress& progress,
                              const StateOfBody& body, const Eigen::VectorXd& start = {});
 

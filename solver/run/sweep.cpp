@@ -278,8 +278,6 @@ SweepEntry Sweep::solve(const Variation& variation, Progress& progress, const Sh
     material_key_ = variation.material ? variation.material_key : "";
     entry = reference_->entry();
   }
-  if (!std::isfinite(entry->energy) || !std::isfinite(entry->sums.force))
-    throw SolveError("the numbers of this variation leave the range of double precision");
   return *entry;
 }
 
