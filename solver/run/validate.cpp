@@ -255,8 +255,21 @@ void apply(const Variation& variation, const Problem& original, Problem& varied)
   varied.material = variation.material ? *variation.material : original.material;
 }
 
+namespace {
+
+void check_outlines(const Problem& problem, std::vector<Fault>& faults) {
+  for (const Quantity& quantity : problem.quantities)
+    if (quantity.outline && !is_simple(*quantity.outline))
+      faults.push_back(
+          {quantity.outline->name, "has sides that cross each other: give its corners one after the other"});
+}
+
+}  // namespace
+
 std::vector<Fault> validate(const Problem& problem) {
-  return Validation(problem, kOnCoarseMesh).run();
+  std::vector<Fault> faults = Validation(problem, kOnCoarseMesh).run();
+  check_outlines(problem, faults);
+  return faults;
 }
 
 std::vector<Fault> validate(const Problem& problem, const Settings& settings) {
@@ -312,11 +325,9 @@ namespace {
 void check_outlines(const Problem& problem, const Region& body, std::vector<Fault>& faults) {
   for (const Quantity& quantity : problem.quantities) {
     if (!quantity.outline) continue;
-    const std::string& name = quantity.outline->name;
-    if (!is_simple(*quantity.outline))
-      faults.push_back({name, "has sides that cross each other: give its corners one after the other"});
-    else if (!body.contains(*quantity.outline))
-      faults.push_back({name, "must lie in the body: the mean is one over the whole polygon"});
+    if (!body.contains(*quantity.outline))
+      faults.push_back(
+          {quantity.outline->name, "must lie in the body: the mean is one over the whole polygon"});
   }
 }
 
