@@ -130,21 +130,20 @@ Solution solve_condensed(const Problem& problem, const std::vector<Variation>& s
   const bool keeps = cache && !used;
   if (used) used = on_loan(std::move(used), MadeBy::another);
   Solution solution;
-  std::shared_ptr<const Mesh> mesh;
+  const std::shared_ptr<const Mesh> mesh = used ? used->shared_mesh() : requested_mesh(problem, progress);
+  require_sound_data(problem, *mesh, progress);
   std::unique_ptr<const Discretization> discretization;
+  std::shared_ptr<const ElementTree> tree;
   {
-    if (!used) mesh = requested_mesh(problem, progress);
-    require_sound_data(problem, used ? used->mesh() : *mesh, progress);
-    CondensedProblem condensed = used ? CondensedProblem(problem, used, progress)
+    CondensedProblem condensed = used ? CondensedProblem(problem, std::move(used), progress)
                                       : CondensedProblem(problem, mesh, settings.factorization, progress);
-    used = condensed.used_operator();
-    if (keeps && cache->keep(problem.operator_key, used)) used = on_loan(std::move(used), MadeBy::this_solve);
+    if (keeps && cache->keep(problem.operator_key, condensed.used_operator()))
+      condensed.borrow(on_loan(condensed.used_operator(), MadeBy::this_solve));
+    used = sweep.empty() ? nullptr : condensed.used_operator();
+    tree = condensed.used_operator()->factor().tree();
     if (!settings.entries_alone) solution = condensed.solve(settings, progress);
-    mesh = used->shared_mesh();
     discretization = condensed.take_discretization();
   }
-  const std::shared_ptr<const ElementTree> tree = used->factor().tree();
-  if (sweep.empty()) used.reset();  // unless the cache has it, too
   if (!settings.entries_alone)
     add_certified(problem, settings, progress, solution, discretization.get(), tree);
   discretization.reset();

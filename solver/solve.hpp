@@ -18,6 +18,7 @@ struct Estimate {
   std::int64_t system = 0;      ///< unknowns of the SPD system that is factored
   double memory_bytes = 0;      ///< that a solve takes at most; see memory_estimate.hpp
   double paper_form_bytes = 0;  ///< the same by the paper's iteration
+  double sweep_bytes = 0;       ///< the same where a sweep uses the factor again, without its entries
   double solution_bytes = 0;    ///< of them, what its solution keeps
   double entry_bytes = 0;       ///< what each entry of a sweep adds
   double kept_bytes = 0;        ///< what a sweep keeps for its quantities

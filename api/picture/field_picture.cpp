@@ -67,7 +67,7 @@ ColourMap colours_of(const Colouring& by, int triangles) {
 
 /// The points of the mesh, moved by so many times the displacement.
 std::vector<Point> moved(const Solution& solution, std::optional<double> deformed) {
-  std::vector<Point> points = solution.mesh.points;
+  std::vector<Point> points = solution.mesh->points;
   for (std::size_t p = 0; deformed && p < points.size(); ++p)
     points[p] += *deformed * solution.displacement_at_points.col(static_cast<Eigen::Index>(p));
   return points;
@@ -265,7 +265,7 @@ std::string styles(const ColourMap& colours) {
 void draw_field(const Solution& solution, const Picture& picture, PieceWriter& out) {
   constexpr double of_scale = 90, least_width = 260, least_height = 360;
   const Colouring by = colouring(solution, picture.field);
-  const ColourMap colours = colours_of(by, static_cast<int>(solution.mesh.triangles.size()));
+  const ColourMap colours = colours_of(by, static_cast<int>(solution.mesh->triangles.size()));
   const std::vector<Point> points = moved(solution, picture.deformed);
   std::vector<std::vector<Point>> lines;
   if (solution.components == 2) lines = foundation(solution, picture.contacts, picture.deformed.value_or(1));
@@ -276,8 +276,8 @@ void draw_field(const Solution& solution, const Picture& picture, PieceWriter& o
   for (const Point& point : points) places.push_back(view(point));
   const double width = std::max(least_width, view.width());
   Svg svg(out, width + of_scale, std::max(least_height, view.height()), by.name, styles(colours));
-  fill_triangles(svg, solution.mesh, by, colours, places);
-  draw_edges(svg, solution.mesh, view, places);
+  fill_triangles(svg, *solution.mesh, by, colours, places);
+  draw_edges(svg, *solution.mesh, view, places);
   draw_foundation(svg, view, lines);
   draw_scale(svg, colours, by.name, width + 6);
   svg.end();

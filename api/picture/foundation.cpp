@@ -56,7 +56,7 @@ std::vector<int> edges_of(const ContactPart& rows, const Mesh& mesh, const Bound
 
 std::vector<std::vector<Point>> foundation(const Solution& solution,
                                            const std::map<std::string, Contact>& contacts, double times) {
-  const Mesh& mesh = solution.mesh;
+  const Mesh& mesh = *solution.mesh;
   const double farthest = size_of(mesh) / 4;
   std::vector<std::vector<Point>> lines;
   for (const ContactPart& rows : solution.contact) {

@@ -59,7 +59,7 @@ double value_at(const std::vector<double>& values, std::size_t row) {
 }  // namespace
 
 std::vector<BoundaryLine> boundary_lines(const Solution& solution) {
-  const Mesh& mesh = solution.mesh;
+  const Mesh& mesh = *solution.mesh;
   std::vector<BoundaryLine> lines;
   for (std::size_t number = 0; number < mesh.boundary.size(); ++number) {
     const BoundaryPart& part = mesh.boundary[number];

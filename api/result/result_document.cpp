@@ -14,7 +14,7 @@ void write_result(DocumentWriter& out, const ResultHead& head, const Solution& s
   if (!head.error_json.empty()) out.key("error").json(head.error_json);
   if (fields.problem) out.key("problem").json(head.problem_json);
   write_summary(out.key("summary"), solution.summary);
-  if (fields.mesh) write_mesh(out.key("mesh"), solution.mesh);
+  if (fields.mesh) write_mesh(out.key("mesh"), *solution.mesh);
   if (fields.displacement) write_displacement(out.key("displacement"), solution);
   if (fields.stress) write_stress(out.key("stress"), solution);
   if (fields.principal) write_principal(out.key("principal"), solution);

@@ -41,9 +41,9 @@ struct Grid {
   const Solution& solution;
   const std::vector<BoundaryLine> lines;
 
-  int triangles() const { return static_cast<int>(solution.mesh.triangles.size()); }
-  std::uint64_t points() const { return 3 * solution.mesh.triangles.size() + 2 * lines.size(); }
-  std::uint64_t cells() const { return solution.mesh.triangles.size() + lines.size(); }
+  int triangles() const { return static_cast<int>(solution.mesh->triangles.size()); }
+  std::uint64_t points() const { return 3 * solution.mesh->triangles.size() + 2 * lines.size(); }
+  std::uint64_t cells() const { return solution.mesh->triangles.size() + lines.size(); }
 };
 
 /// An array with a row for each corner of each triangle, and behind them one for each end of each line:
@@ -94,7 +94,7 @@ std::vector<DataArray> at_points(const Grid& grid) {
     return solution.displacement.col(t).segment(k * step, d);
   };
   const auto continuous = [&solution](int t, int k) {
-    return solution.displacement_at_points.col(solution.mesh.triangles[t][k]);
+    return solution.displacement_at_points.col(solution.mesh->triangles[t][k]);
   };
   std::vector<DataArray> arrays{at_corners("displacement", grid, components, discontinuous),
                                 at_corners("displacement_continuous", grid, components, continuous)};
@@ -133,7 +133,7 @@ DataArray equivalent_stress(const Grid& grid) {
 /// The square of the error bound is its integral.
 DataArray error_density(const Grid& grid) {
   return in_cells("error_density", grid, 1, [&solution = grid.solution](PieceWriter& out, int t) {
-    const auto [a, b, c] = solution.mesh.corners(t);
+    const auto [a, b, c] = solution.mesh->corners(t);
     const Vector ab = b - a, ac = c - a;
     out.put_binary(solution.error_squares[t] / (std::abs(ab.x() * ac.y() - ab.y() * ac.x()) / 2));
   });
@@ -157,7 +157,7 @@ std::vector<DataArray> of_cells(const Grid& grid) {
 }
 
 DataArray points(const Grid& grid) {
-  return at_corners("Points", grid, 3, [&mesh = grid.solution.mesh](int t, int k) {
+  return at_corners("Points", grid, 3, [&mesh = *grid.solution.mesh](int t, int k) {
     return mesh.points[static_cast<std::size_t>(mesh.triangles[t][k])];
   });
 }

@@ -17,8 +17,8 @@ namespace {
 /// So that the largest displacement is a share of the body that is seen.
 double deformation(const Solution& solution) {
   constexpr double seen = 0.05;
-  Point low = solution.mesh.points.front(), high = low;
-  for (const Point& point : solution.mesh.points) {
+  Point low = solution.mesh->points.front(), high = low;
+  for (const Point& point : solution.mesh->points) {
     low = low.cwiseMin(point);
     high = high.cwiseMax(point);
   }

@@ -24,7 +24,7 @@ std::size_t memory_of(const ContactPart& part) {
 }
 
 std::size_t memory_of(const Solution& solution) {
-  std::size_t bytes = sizeof(Solution) + solution.mesh.bytes() + memory_of(solution.stress) +
+  std::size_t bytes = sizeof(Solution) + solution.mesh->bytes() + memory_of(solution.stress) +
                       memory_of(solution.displacement) + memory_of(solution.displacement_at_points) +
                       memory_of(solution.stress_at_centroids) + memory_of(solution.rotation) +
                       memory_of(solution.error_squares) + memory_of(solution.admissible_pressure) +

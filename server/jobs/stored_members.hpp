@@ -5,6 +5,8 @@
 // added to a list ends it, under `if (version >= n)`, with n the new version of its class below, or that of
 // the next larger one where its own has no version: results that an earlier version stored are still there.
 
+#include <memory>
+
 #include <cereal/types/array.hpp>
 #include <cereal/types/optional.hpp>
 #include <cereal/types/string.hpp>
@@ -208,16 +210,20 @@ void serialize(Archive& archive, LevelFields& level) {
 
 template <class Archive>
 void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
-  auto& [summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
+  auto& [summary, scheme, shared_mesh, components, stress, displacement, rotation, displacement_at_points,
          stress_at_centroids, out_of_plane_stress, error_squares, admissible_pressure, contact, history,
          sweep, study, levels] = solution;
-  archive(summary, scheme, mesh, components, stress, displacement, rotation, displacement_at_points,
+  // The one that is written stays as it is.
+  const auto mesh =
+      Archive::is_loading::value ? std::make_shared<Mesh>() : std::const_pointer_cast<Mesh>(shared_mesh);
+  archive(summary, scheme, *mesh, components, stress, displacement, rotation, displacement_at_points,
           stress_at_centroids, out_of_plane_stress, contact, history);
   if (version >= 1) archive(sweep);
   if (version >= 2) archive(study);
   if (version >= 3)
     for (StudyRow& row : study) serialize_asymmetry(archive, row.error_bound);
-  if (version >= 4) archive(mesh.circles, mesh.edge_circles, mesh.notes, error_squares, admissible_pressure);
+  if (version >= 4)
+    archive(mesh->circles, mesh->edge_circles, mesh->notes, error_squares, admissible_pressure);
   if (version >= 5)
     for (EdgePressure& own : admissible_pressure) archive(own.begin, own.end);
   if (version >= 6) {
@@ -233,6 +239,7 @@ void serialize(Archive& archive, Solution& solution, std::uint32_t version) {
   }
   if (version >= 8)
     for (StudyRow& row : study) archive(row.inf_sup);
+  if constexpr (Archive::is_loading::value) shared_mesh = mesh;
 }
 
 }  // namespace signorini

@@ -12,7 +12,7 @@ SmallMatrix gradient(const Compliance& compliance, const Solution& solution, int
   const auto stress = solution.stress_at_centroids.col(t);
   if (solution.components == 1) return compliance.lazyProduct(stress).transpose();
   const Eigen::Vector4d strain = compliance * Eigen::Vector4d(stress[0], stress[2], stress[2], stress[1]);
-  const auto& [a, b, c] = solution.mesh.triangles[t];
+  const auto& [a, b, c] = solution.mesh->triangles[t];
   const double rotation = (solution.rotation[a] + solution.rotation[b] + solution.rotation[c]) / 3;
   Eigen::Matrix2d gradient;
   gradient << strain[0], strain[1] + rotation, strain[2] - rotation, strain[3];
@@ -64,7 +64,7 @@ Eigen::VectorXd out_of_plane_stress(const Material& material, const Mesh& mesh,
 }
 
 Eigen::MatrixXd displacement_at_points(const Problem& problem, const Solution& solution) {
-  const Mesh& mesh = solution.mesh;
+  const Mesh& mesh = *solution.mesh;
   const int d = solution.components;
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(d, mesh.points.size());
   Eigen::VectorXd triangles_at = Eigen::VectorXd::Zero(mesh.points.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -275,7 +276,8 @@ struct StudyRow {
 struct Solution {
   Summary summary;
   Scheme scheme = Scheme::nonconforming;
-  Mesh mesh;
+  /// Shared with the operator, and with others that are solved on it; empty, but there, if there is none.
+  std::shared_ptr<const Mesh> mesh = std::make_shared<const Mesh>();
 
   /// 1 for a membrane, 2 for an elastic body.
   int components = 1;

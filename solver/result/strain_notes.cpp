@@ -18,7 +18,7 @@ constexpr double kNoticeableShare = 0.01;
 
 /// ∇u on triangle t of the displacement that is linear between the points of the mesh.
 Eigen::Matrix2d gradient_on(const Solution& solution, int t, const AffineMap& map) {
-  const auto& [a, b, c] = solution.mesh.triangles[t];
+  const auto& [a, b, c] = solution.mesh->triangles[t];
   const auto& u = solution.displacement_at_points;
   Eigen::Matrix2d reference;
   reference << u.col(b) - u.col(a), u.col(c) - u.col(a);
@@ -30,8 +30,8 @@ Eigen::Matrix2d gradient_on(const Solution& solution, int t, const AffineMap& ma
 std::vector<std::string> notes_on_strains(const Solution& solution) {
   if (solution.components == 1) return {};
   double area = 0, large = 0, inside_out = 0, largest = 0;
-  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
-    const AffineMap map(solution.mesh.corners(t));
+  for (int t = 0; t < static_cast<int>(solution.mesh->triangles.size()); ++t) {
+    const AffineMap map(solution.mesh->corners(t));
     const Eigen::Matrix2d gradient = gradient_on(solution, t, map);
     const double own = map.determinant / 2;
     area += own;

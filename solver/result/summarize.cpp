@@ -194,8 +194,8 @@ bool is_at_rest(const Problem& problem, const Solution& solution, const ErrorBou
   for (const ContactPart& part : solution.contact)
     for (const double clearance : part.clearance)
       length = std::max(length, std::min(clearance, kFar * displacement));
-  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
-    const auto c = compliance_at(problem.material, solution.mesh.centroid(t));
+  for (int t = 0; t < static_cast<int>(solution.mesh->triangles.size()); ++t) {
+    const auto c = compliance_at(problem.material, solution.mesh->centroid(t));
     compliance = std::min(compliance, c.diagonal().minCoeff());
   }
   constexpr double rounding = 1e-11;
@@ -210,15 +210,15 @@ Timings timings(const Progress& progress) {
           progress.seconds_in(Phase::certify),   progress.seconds()};
 }
 
-Solution describe(const Discretization& discrete, const Fields& fields, const Settings& settings,
-                  Progress& progress) {
+Solution describe(const Discretization& discrete, std::shared_ptr<const Mesh> mesh, Fields& fields,
+                  const Settings& settings, Progress& progress) {
   Solution solution;
   Summary& summary = solution.summary;
   solution.scheme = discrete.problem.scheme;
-  solution.mesh = discrete.mesh;
+  solution.mesh = std::move(mesh);
   solution.components = discrete.spaces().components;
-  solution.stress = fields.stress;
-  solution.displacement = fields.displacement;
+  solution.stress = std::move(fields.stress);
+  solution.displacement = std::move(fields.displacement);
   solution.rotation = discrete.traces.rotation(fields.coupling);
   progress.check();
   summary.energy = energy(discrete, solution);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "certify/certificate.hpp"
 #include "fem/discretization.hpp"
@@ -40,9 +41,9 @@ Reaction make_reaction(std::string part, const std::vector<double>& values);
 
 /// Everything that a solution tells beyond the fields but its error bound, computed from the fields alone:
 /// contact pressures, residuals, energy, sums, fields for pictures. Throws SolveError if a number is not
-/// finite.
-Solution describe(const Discretization& discrete, const Fields& fields, const Settings& settings,
-                  Progress& progress);
+/// finite. Takes stress and displacement out of the fields; `mesh` is that of the discretization.
+Solution describe(const Discretization& discrete, std::shared_ptr<const Mesh> mesh, Fields& fields,
+                  const Settings& settings, Progress& progress);
 
 /// Stress and bound are rounding beside what displacement and clearance might have made, as of a body that
 /// moves without strain. A pressure at which the stress is rounding acts over the clearance, so that of the

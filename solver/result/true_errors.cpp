@@ -46,7 +46,7 @@ class Differences {
   }
 
   void add(int t, Squares& squares) {
-    const AffineMap map(solution_.mesh.corners(t));
+    const AffineMap map(solution_.mesh->corners(t));
     for (int q = 0; q < static_cast<int>(rule_.size()); ++q) {
       const Point x = map(rule_[q].point);
       const double weight = rule_[q].weight * map.determinant;
@@ -84,7 +84,7 @@ Squares integrate(const Problem& problem, const Exact& exact, const Solution& so
   Squares squares;
   if (!exact.displacement && exact.stress.empty()) return squares;
   Differences<D> differences(problem, exact, solution);
-  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
+  for (int t = 0; t < static_cast<int>(solution.mesh->triangles.size()); ++t) {
     if (t % 256 == 0 && !observer.keep_going()) throw Cancelled();
     differences.add(t, squares);
   }
@@ -93,7 +93,7 @@ Squares integrate(const Problem& problem, const Exact& exact, const Solution& so
 
 /// 2 <p*, g − u_n>.
 double contact_term(const Problem& problem, const VectorField& u, const Solution& solution) {
-  const Mesh& mesh = solution.mesh;
+  const Mesh& mesh = *solution.mesh;
   std::map<int, EdgePressure> pressures;
   for (const EdgePressure& own : solution.admissible_pressure) pressures.emplace(own.edge, own);
   double sum = 0;

@@ -55,7 +55,7 @@ class Levels {
                            static_cast<int>(n.stress + n.displacement + n.contact + n.rotation),
                            summary.error_bound->value, summary.error_bound->relative, summary.iterations, 0},
                           solution));
-    fields_.push_back({levels_.back().number, solution.mesh.points, solution.mesh.triangles,
+    fields_.push_back({levels_.back().number, solution.mesh->points, solution.mesh->triangles,
                        solution.displacement_at_points, solution.error_squares});
     history_.insert(history_.end(), solution.history.begin(), solution.history.end());
     finest_ = std::make_shared<Solution>(std::move(solution));
@@ -240,7 +240,7 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           Outcome::tolerance_not_met,
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
-    mesh = finer_mesh(levels.finest().mesh, levels.shares(), levels.growth(), most, progress);
+    mesh = finer_mesh(*levels.finest().mesh, levels.shares(), levels.growth(), most, progress);
     if (mesh->triangles.size() > most)
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +

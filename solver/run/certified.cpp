@@ -40,7 +40,7 @@ void add_certified(const Problem& problem, const Settings& settings, Progress& p
     if (at_hand != nullptr)
       add_supports(*at_hand, std::move(tree), settings, progress, solution, certified);
     else
-      add_supports(Discretization(problem, solution.mesh, &progress), nullptr, settings, progress, solution,
+      add_supports(Discretization(problem, *solution.mesh, &progress), nullptr, settings, progress, solution,
                    certified);
   } catch (const TimeUp&) {
     certified.unmet.push_back(

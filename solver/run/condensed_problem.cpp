@@ -129,21 +129,32 @@ Fields CondensedProblem::find_as_posed(const Method& method, Progress& progress,
           all.coupling.tail(found.clearance.size()).cwiseMax(0), std::move(all.coupling), found.outcome};
 }
 
+Certificate CondensedProblem::certified(const Fields& fields, const Solution& solution, Factorization by,
+                                        Progress& progress, KeptDuals* kept) {
+  const bool is_used_again = kept != nullptr || !discretization_->problem.quantities.empty();
+  if (!is_used_again) {
+    condensed_.reset();
+    operator_.reset();
+    ShapeNorms norms;
+    return certify(*discretization_, solution, fields.coupling, norms, progress);
+  }
+  KeptDuals own(KeptDuals::For::one_solve);
+  KeptDuals& all = kept ? *kept : own;
+  Certificate certificate = certify(*discretization_, solution, fields.coupling, all.norms(*this), progress);
+  enclose_quantities(*this, fields, solution, by, certificate, all, progress);
+  return certificate;
+}
+
 Solution CondensedProblem::solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start,
                                  KeptDuals* kept) {
   progress.enter(Phase::iterate);
-  const Fields fields = find(settings.method, progress, start);
-  Solution solution = describe(*discretization_, fields, settings, progress);
+  Fields fields = find(settings.method, progress, start);
+  Solution solution = describe(*discretization_, operator_->shared_mesh(), fields, settings, progress);
   solution.summary.reused = reused_;
-  const auto bound = [&] {
-    KeptDuals own(KeptDuals::For::one_solve);
-    KeptDuals& all = kept ? *kept : own;
-    Certificate certificate =
-        certify(*discretization_, solution, fields.coupling, all.norms(*this), progress);
-    enclose_quantities(*this, fields, solution, settings.factorization, certificate, all, progress);
-    return certificate;
-  };
-  add_bound(discretization_->problem, bound, solution, progress);
+  add_bound(
+      discretization_->problem,
+      [&] { return certified(fields, solution, settings.factorization, progress, kept); }, solution,
+      progress);
   return solution;
 }
 

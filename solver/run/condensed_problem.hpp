@@ -34,6 +34,8 @@ class CondensedProblem {
   /// It refers to the problem and to the mesh of the operator. Nothing else of this may be used any more.
   std::unique_ptr<Discretization> take_discretization() { return std::move(discretization_); }
   const std::shared_ptr<const Operator>& used_operator() const { return operator_; }
+  /// Uses the same operator as a loan of the cache that keeps it now.
+  void borrow(std::shared_ptr<const Operator> lent) { operator_ = std::move(lent); }
   const ContactComplement& contact() const { return condensed_->contact(); }
 
   /// Finds the clearances, beginning as find_clearance() does, and from them all fields. The method is one on
@@ -42,8 +44,13 @@ class CondensedProblem {
   /// reach is as good as any other.
   Fields find(const Method& method, Progress& progress, const Eigen::VectorXd& start = {});
 
-  /// The same with all that the fields tell, error bound included. `kept`: of the sweep that this is an entry
-  /// of.
+  /// The error bound of what was found, and the quantities. `kept`: of the sweep that this is an entry of.
+  /// Without one, and if no quantity needs it, lets go of the operator first, for the bound needs none:
+  /// nothing but the discretization may be used any more then.
+  Certificate certified(const Fields& fields, const Solution& solution, Factorization by, Progress& progress,
+                        KeptDuals* kept = nullptr);
+
+  /// Finds the fields, and all that they tell, certified.
   Solution solve(const Settings& settings, Progress& progress, const Eigen::VectorXd& start = {},
                  KeptDuals* kept = nullptr);
 

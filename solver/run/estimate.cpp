@@ -19,8 +19,11 @@ Estimate estimate(const Problem& problem, const Mesh& mesh, Factorization by) {
 }
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
+  if (entries > 0) estimate.memory_bytes = estimate.sweep_bytes;
+  // Its iterate is there while the discrete solution is certified.
   if (std::holds_alternative<PaperUzawa>(settings.method))
-    estimate.memory_bytes = std::max(estimate.memory_bytes, estimate.paper_form_bytes);
+    estimate.memory_bytes =
+        std::max(estimate.memory_bytes + estimate.solution_bytes, estimate.paper_form_bytes);
   estimate.memory_bytes += std::visit(
       [](const auto& method) { return memory_of_history(method.max_iterations); }, settings.method);
   // A sweep has a second solution, to which its entries refer, and what they share.
@@ -91,7 +94,7 @@ Estimate with_sweep(const Problem& problem, const std::vector<Variation>& sweep,
                  quantities * static_cast<double>(1 + sweep.size());
   if (const std::optional<Problem> varied = heaviest(problem, sweep)) {
     const Estimate with_it = Estimation(*varied, settings.factorization, &predicted)();
-    most.memory_bytes = std::max(most.memory_bytes, with_it.memory_bytes);
+    most.sweep_bytes = std::max(most.sweep_bytes, with_it.sweep_bytes);
     most.paper_form_bytes = std::max(most.paper_form_bytes, with_it.paper_form_bytes);
   }
   return for_solve(most, settings, sweep.size());

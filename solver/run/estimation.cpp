@@ -344,14 +344,16 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
                          own_shapes(static_cast<double>(estimate.triangles)),
                          boundary,
                          static_cast<double>(conditions_.size())};
-  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_);
+  estimate.memory_bytes = memory_of_solve(problem_, spaces, sizes, by_, Afterwards::let_go);
+  estimate.sweep_bytes = memory_of_solve(problem_, spaces, sizes, by_, Afterwards::used_again);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   if (!problem_.quantities.empty()) {
     // The body without its contacts is factored beside the problem.
     const bool opens = std::ranges::any_of(
         problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
-    if (opens) estimate.memory_bytes *= 2;
-    estimate.memory_bytes += memory_of_dual(problem_, spaces, sizes.triangles);
+    const double of_dual = memory_of_dual(problem_, spaces, sizes.triangles);
+    for (double* const bytes : {&estimate.memory_bytes, &estimate.sweep_bytes})
+      *bytes = (opens ? 2 : 1) * *bytes + of_dual;
     estimate.kept_bytes = memory_of_kept_duals(problem_, spaces, sizes);
   }
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);

@@ -13,6 +13,7 @@
 #include "progress/observer.hpp"
 #include "progress/progress.hpp"
 #include "system/dissection.hpp"
+#include "system/lower_triangle.hpp"
 #include "system/repeated_pieces.hpp"
 #include "system/short_cut.hpp"
 
@@ -82,7 +83,7 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, int kinds, con
     const double most =
         ragged_x * x.most_inner_sides() * y.squares + ragged_y * y.most_inner_sides() * x.squares;
     const double largest = most * (per_edge + per_point) + contact / x.pieces;
-    all.stacks += kValue * (level > 0 ? 2 : 1) * largest * largest;
+    all.stacks += kValue * (level > 0 ? 2 : 1) * numbers_of_lower_triangle(largest);
     longer.halve(is_regular);
   }
   return all;
@@ -277,13 +278,13 @@ FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, dou
     stacks_of_leaf = std::max(stacks_of_leaf, inside.stacks);
     // As multifrontal() keeps them: one stack for a piece, the other for its halves, and what several take
     // in.
-    (uses[i] > 1 ? shared : stacks[piece.parity]) += rim * rim;
+    (uses[i] > 1 ? shared : stacks[piece.parity]) += numbers_of_lower_triangle(rim);
     most_shared = std::max(most_shared, shared);
     largest[piece.parity] = std::max(largest[piece.parity], stacks[piece.parity]);
     if (piece.is_leaf) continue;
     for (const int half : piece.halves) {
       const int original = original_of(half);
-      const double left = std::pow(rim_of(pieces_[original]), 2);
+      const double left = numbers_of_lower_triangle(rim_of(pieces_[original]));
       if (uses[original] <= 1)
         stacks[1 - piece.parity] -= left;
       else if (--uses_left[original] == 0)

@@ -42,7 +42,8 @@ Grid grid_of(const Problem& problem, double triangles, bool repeated) {
   const auto [x, y] = divisions(rectangle, problem.mesh);
   const double finer =
       problem.mesh.adaptive ? std::sqrt(triangles / 2 / x / y) : std::exp2(problem.mesh.refine);
-  const int kinds = problem.mesh.pattern == Pattern::alternating ? 2 : 1;
+  const bool is_plain = problem.mesh.pattern == Pattern::right || problem.mesh.pattern == Pattern::left;
+  const int kinds = is_plain ? 1 : 2;
   return {finer * x,
           finer * y,
           rectangle.size.x() / (finer * x),
@@ -59,22 +60,33 @@ constexpr double kPanelsOfArms = 1.5, kStacksOfArms = 2.5;
 /// other cuts, which matter where the factor is most of what there is.
 constexpr double kNearLocalSizes = 1.25, kOfOtherCuts = 1.1;
 
+/// Of crossed squares an odd number is cut through one of them: that cut is longer, and fewer pieces are
+/// alike, as measured.
+constexpr double kThroughCrossed = 1.33;
+bool are_cut_through(const Problem& problem) {
+  const auto* rectangle = std::get_if<Rectangle>(&problem.domain);
+  if (rectangle == nullptr || problem.mesh.pattern != Pattern::crossed || problem.mesh.adaptive) return false;
+  constexpr int often_even = 8;
+  const auto [x, y] = divisions(*rectangle, problem.mesh);
+  return x % often_even != 0 || y % often_even != 0;
+}
+
 FactorBytes dissected(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, bool repeated) {
+  FactorBytes made;
+  const auto enlarge = [&](double panels, double stacks) { made.panels *= panels, made.stacks *= stacks; };
   if (sizes.pieces == nullptr || sizes.pieces->empty()) {
-    FactorBytes made =
-        factor_bytes(grid_of(problem, sizes.triangles, repeated), spaces, sizes.triangles, sizes.contact);
-    made.panels *= 1 + sizes.across * (kPanelsOfArms - 1);
-    made.stacks *= 1 + sizes.across * (kStacksOfArms - 1);
-    return made;
+    made = factor_bytes(grid_of(problem, sizes.triangles, repeated), spaces, sizes.triangles, sizes.contact);
+    enlarge(1 + sizes.across * (kPanelsOfArms - 1), 1 + sizes.across * (kStacksOfArms - 1));
+  } else {
+    made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact, repeated);
+    if (std::holds_alternative<Polygon>(problem.domain) && sizes.pieces->triangles() < sizes.triangles) {
+      const double larger = !problem.mesh.sizes.empty() ? kNearLocalSizes
+                            : spaces.components == 2    ? kOfOtherCuts
+                                                        : 1;
+      enlarge(larger, larger);
+    }
   }
-  FactorBytes made = sizes.pieces->factor_bytes(spaces, sizes.triangles, sizes.contact, repeated);
-  if (std::holds_alternative<Polygon>(problem.domain) && sizes.pieces->triangles() < sizes.triangles) {
-    const double larger = !problem.mesh.sizes.empty() ? kNearLocalSizes
-                          : spaces.components == 2    ? kOfOtherCuts
-                                                      : 1;
-    made.panels *= larger;
-    made.stacks *= larger;
-  }
+  if (are_cut_through(problem)) enlarge(kThroughCrossed, kThroughCrossed);
   return made;
 }
 
@@ -143,7 +155,7 @@ double relaxation(double own_shapes) {
 /// function, of which its minimum under conditions makes copies. As measured of thin bodies, whose triangles
 /// all take part. A membrane of the higher order has its patches instead.
 double minimization(const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double of_body = 28e3, of_body_lower = 3e3, of_membrane_lower = 10e3, triangles_at_contact = 16;
+  constexpr double of_body = 37e3, of_body_lower = 3e3, of_membrane_lower = 10e3, triangles_at_contact = 16;
   const double of_contact = spaces.components == 1 ? (spaces.order == 0 ? of_membrane_lower : 0)
                                                    : (spaces.order == 0 ? of_body_lower : of_body);
   return of_contact * std::min(sizes.contact, sizes.triangles / triangles_at_contact);
@@ -211,10 +223,19 @@ bool has_uniform_load(const Condition& condition) {
   return true;
 }
 
-double memory_of_solution(const Spaces& spaces, double triangles) {
+namespace {
+
+/// The Solution of a solve without its mesh.
+double fields_of_solution(const Spaces& spaces, double triangles) {
   const double per_point = 0.5 * (spaces.components + (spaces.rotations() ? 1 : 0));
   const double at_centroid = spaces.components == 1 ? 2 : 4, share = 1;
-  return triangles * (kMesh + kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share));
+  return triangles * kNumber * (numbers_of_fields(spaces) + per_point + at_centroid + share);
+}
+
+}  // namespace
+
+double memory_of_solution(const Spaces& spaces, double triangles) {
+  return triangles * kMesh + fields_of_solution(spaces, triangles);
 }
 
 /// Cells along the curve where a density jumps, as measured of the smallest discs, under laws that vary.
@@ -270,32 +291,34 @@ double on_boundary(const SolveSizes& sizes) {
 }
 
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
-                       Factorization by) {
+                       Factorization by, Afterwards factor_is) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
   const double complement = kNumber * sizes.contact * sizes.contact;
-  const double kept = made.panels + made.fronts + complement +
-                      sizes.triangles * (kMesh + discretization(problem.body, spaces));
+  const double factor = made.panels + made.fronts + complement;
+  const double kept = factor_is == Afterwards::used_again || !problem.quantities.empty() ? factor : 0;
   const double right = kNumber * sizes.system;
-  const double factoring = while_factoring(made, spaces, sizes, by) + complement + right +
+  const double factoring = factor + while_factoring(made, spaces, sizes, by) + right +
                            sizes.triangles * element_sum(spaces, sizes.own_shapes);
-  // The fields as they were found, the solution, and what is made on the way to it.
-  const double found = right + kNumber * sizes.triangles * numbers_of_fields(spaces);
-  const double certifying = 2 * (right + complement) + found + memory_of_solution(spaces, sizes.triangles) +
+  // The traces as they were found, and the solution; and what is made on the way to it.
+  const double found = right + fields_of_solution(spaces, sizes.triangles);
+  const double finding = factor + 4 * right + complement + found;
+  const double certifying = kept + (kept > 0 ? 2 * (right + complement) : 0) + found +
                             sizes.triangles * kNumber * spaces.stresses() +
                             certificate(problem, spaces, sizes) + carrying(problem, spaces, sizes.triangles) +
                             tables(problem, spaces);
   // Extensions have the components in a point of a cut, where traces and rotations have more on a side.
   const double on_side = spaces.traces_per_edge() + (spaces.rotations() ? 1 : 0), d = spaces.components;
   const double of_factor = d * d / (on_side * on_side) * while_factoring(made, spaces, sizes, by);
-  const double enclosing = memory_of_solution(spaces, sizes.triangles) + of_factor +
-                           d * d / (on_side * on_side) * made.panels +
+  const double enclosing = kept + found + of_factor + d * d / (on_side * on_side) * made.panels +
                            sizes.triangles * (3 * d * sizeof(int) + sizeof(int) + sizeof(Point) +
                                               3 * kNumber * d + sizes.own_shapes * 9 * d * d * kNumber);
   // A mesh that refines itself keeps the solution of the level before, and what is seen of all.
   const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
                                                     memory_of_levels(spaces, sizes.triangles)
                                               : 0;
-  return slack(spaces) * (kept + on_boundary(sizes) + std::max({factoring, certifying, enclosing}) + before);
+  const double all_along =
+      sizes.triangles * (kMesh + discretization(problem.body, spaces)) + on_boundary(sizes) + before;
+  return slack(spaces) * (all_along + std::max({factoring, finding, certifying, enclosing}));
 }
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,

@@ -5,15 +5,15 @@
 #include "contact/paper_uzawa.hpp"
 #include "contact/rigid_motions.hpp"
 #include "data_check.hpp"
-#include "quantities.hpp"
 #include "requested_mesh.hpp"
 #include "result/summarize.hpp"
 
 namespace signorini {
 namespace {
 
-Solution iterate(const Problem& problem, const Mesh& mesh, const Settings& settings, Progress& progress) {
-  const Discretization discrete(problem, mesh, &progress);
+Solution iterate(const Problem& problem, std::shared_ptr<const Mesh> mesh, const Settings& settings,
+                 Progress& progress) {
+  const Discretization discrete(problem, *mesh, &progress);
   held_by_contact_alone(discrete);
   progress.enter(Phase::assemble);
   UzawaIteration iteration(discrete, std::get<PaperUzawa>(settings.method), settings.factorization, progress);
@@ -22,7 +22,7 @@ Solution iterate(const Problem& problem, const Mesh& mesh, const Settings& setti
   progress.found();
   Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
                 outcome};
-  return describe(discrete, fields, settings, progress);
+  return describe(discrete, std::move(mesh), fields, settings, progress);
 }
 
 /// The certificate of the discrete solution, moved to the iterate.
@@ -31,13 +31,10 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
   SilentObserver silent(progress.observer());
   Progress within(silent, progress.time_left());
   CondensedProblem condensed(problem, mesh, by, within);
-  const Fields fields = condensed.find(ActiveSet{}, within);
+  Fields fields = condensed.find(ActiveSet{}, within);
   const Settings exactly{ActiveSet{}, std::nullopt};
-  const Solution discrete = describe(condensed.discretization(), fields, exactly, within);
-  KeptDuals duals(KeptDuals::For::one_solve);
-  Certificate certificate =
-      certify(condensed.discretization(), discrete, fields.coupling, duals.norms(condensed), within);
-  enclose_quantities(condensed, fields, discrete, by, certificate, duals, within);
+  const Solution discrete = describe(condensed.discretization(), mesh, fields, exactly, within);
+  Certificate certificate = condensed.certified(fields, discrete, by, within);
   move_to(iterate.stress, condensed.discretization(), discrete, certificate, within);
   return certificate;
 }
@@ -45,13 +42,13 @@ Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const 
 }  // namespace
 
 Solution iterate_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
-  return iterate(problem, *requested_mesh(problem, progress), settings, progress);
+  return iterate(problem, requested_mesh(problem, progress), settings, progress);
 }
 
 Solution solve_paper_form(const Problem& problem, const Settings& settings, Progress& progress) {
   const std::shared_ptr<const Mesh> mesh = requested_mesh(problem, progress);
   require_sound_data(problem, *mesh, progress);
-  Solution solution = iterate(problem, *mesh, settings, progress);
+  Solution solution = iterate(problem, mesh, settings, progress);
   add_bound(
       problem, [&] { return certify_iterate(problem, mesh, solution, settings.factorization, progress); },
       solution, progress);

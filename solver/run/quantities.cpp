@@ -95,19 +95,21 @@ bool is_nowhere_negative(const Quantity& quantity, const Discretization& discret
 }
 
 /// (q, u_h) + <r, u_h>, with the loads of the dual problem.
-double work_on(const Fields& fields, const Discretization& loads) {
+double work_on(const Eigen::MatrixXd& displacement, const Eigen::VectorXd& coupling,
+               const Discretization& loads) {
   const Eigen::Index free = loads.traces.free_unknowns();
-  return loads.load.cwiseProduct(fields.displacement).sum() +
-         loads.coupling_load.head(free).dot(fields.coupling.head(free));
+  return loads.load.cwiseProduct(displacement).sum() +
+         loads.coupling_load.head(free).dot(coupling.head(free));
 }
 
 /// Q of the discrete solution.
 double value_of(const Quantity& quantity, const Discretization& loads, const Discretization& discrete,
-                const Fields& fields, const Solution& solution) {
+                const Eigen::VectorXd& coupling, const Solution& solution) {
   Eigen::VectorXd forces;
   contact_forces(
       discrete, [&](int t) -> LocalVector { return solution.stress.col(t); }, forces);
-  double sum = work_on(fields, loads) + on_rows(quantity.weights, discrete).dot(forces);
+  double sum =
+      work_on(solution.displacement, coupling, loads) + on_rows(quantity.weights, discrete).dot(forces);
   for (const Reaction& reaction : solution.summary.parts)
     if (const auto found = quantity.motions.find(reaction.part); found != quantity.motions.end()) {
       for (std::size_t c = 0; c < reaction.force.size(); ++c)
@@ -177,7 +179,8 @@ class Encloser {
 
   void enclose_by_dual(const Quantity& quantity, CondensedDual& condensed, EnclosedQuantity& own) {
     DualSolution dual(condensed_, condensed);
-    own.value = own.estimate = value_of(quantity, dual.discretization(), discrete(), fields_, solution_);
+    own.value = own.estimate =
+        value_of(quantity, dual.discretization(), discrete(), fields_.coupling, solution_);
     own.unmet = base_.unmet;
     try {
       enclose(quantity, dual, own);

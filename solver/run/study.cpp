@@ -47,7 +47,7 @@ StudyRow row_of(const Problem& problem, const Study& study, const Settings& sett
   const Summary& summary = solution.summary;
   StudyRow row;
   row.scheme = solution.scheme;
-  row.size = largest_edge(solution.mesh);
+  row.size = largest_edge(*solution.mesh);
   row.triangles = summary.triangles;
   row.unknowns = summary.unknowns;
   row.energy = summary.energy;
@@ -55,7 +55,7 @@ StudyRow row_of(const Problem& problem, const Study& study, const Settings& sett
   row.quantities = summary.quantities;
   row.errors = true_errors(problem, study.exact, solution, observer);
   require_finite(row.errors);
-  if (study.checks_inf_sup) row.inf_sup = inf_sup_in_time(problem, solution.mesh, settings, observer);
+  if (study.checks_inf_sup) row.inf_sup = inf_sup_in_time(problem, *solution.mesh, settings, observer);
   row.iterations = summary.iterations;
   row.seconds = summary.timings.total;
   return row;

@@ -27,6 +27,8 @@ Dissection::Dissection(const ElementSum& sum, int trailing, Progress& progress)
     unknowns_.insert(unknowns_.end(), gathered.begin(), gathered.end());
   });
   unknowns_.shrink_to_fit();  // for they stay as long as the factor does
+  eliminated_in_ = {};
+  found_as_ = {};
 }
 
 void Dissection::place_unknowns(const ElementSum& sum, int trailing) {

@@ -89,10 +89,10 @@ class Dissection {
   }
 
   std::shared_ptr<const ElementTree> tree_;
-  std::vector<int> eliminated_in_;  ///< the piece of each unknown
-  std::vector<int> found_as_;       ///< of each unknown: how many were found before it, leaf by leaf; its
-                                    ///< number if it is a trailing one
-  std::vector<Place> places_;       ///< of each piece's front in unknowns_
+  // Until the fronts are known: the piece of each unknown, and how many unknowns were found before it, leaf
+  // by leaf, which of a trailing one is its number.
+  std::vector<int> eliminated_in_, found_as_;
+  std::vector<Place> places_;  ///< of each piece's front in unknowns_
   std::vector<int> unknowns_;
 };
 

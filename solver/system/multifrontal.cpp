@@ -11,6 +11,7 @@
 #include "progress/pace.hpp"
 #include "system/dissection.hpp"
 #include "system/elimination_in_blocks.hpp"
+#include "system/lower_triangle.hpp"
 #include "system/repeated_pieces.hpp"
 
 namespace signorini {
@@ -19,7 +20,7 @@ namespace {
 /// Fronts up to this size are factored without BLAS.
 constexpr int kSmall = 24;
 
-/// Square matrices that are taken and released last in, first out.
+/// Matrices that are taken and released last in, first out.
 class Stack {
  public:
   explicit Stack(std::size_t capacity) : values_(allocate_numbers(capacity)) {}
@@ -37,10 +38,10 @@ class Stack {
   std::size_t used_ = 0;
 };
 
-/// The numerical part, which fills the panels of the original pieces. What a piece leaves is a square matrix
-/// of its front's rest, kept until the pieces that it is a half of have taken it in. Mostly that is one. Its
-/// own is made while those of its halves still stand, so pieces of odd and of even depth use two stacks, and
-/// each is last in, first out. What several take in stands by itself.
+/// The numerical part, which fills the panels of the original pieces. What a piece leaves is a symmetric
+/// matrix of its front's rest, kept until the pieces that it is a half of have taken it in. Mostly that is
+/// one. Its own is made while those of its halves still stand, so pieces of odd and of even depth use two
+/// stacks, and each is last in, first out. What several take in stands by itself.
 class FrontElimination {
  public:
   FrontElimination(const Dissection& order, const RepeatedPieces& repeated, double* panels,
@@ -60,27 +61,27 @@ class FrontElimination {
   /// What the whole leaves, in the order of the trailing unknowns. Columns are filled one after the other:
   /// gigabytes that are touched for the first time come page by page.
   Eigen::MatrixXd complement() {
-    constexpr int whole = 1, block = 64;
+    constexpr int whole = 1, block = LowerTriangle::kStrip;
     const Dissection::Front front = order_.front(whole);
     const int n = front.rest();
     stack(whole).pop(rest_size(front));
-    const Eigen::Map<const Eigen::MatrixXd> lower(stack(whole).top(), n, n);
+    const double* const values = stack(whole).top();
+    const LowerTriangle lower(n);
     Eigen::MatrixXd all = unset_square(n);
     for (int j = 0; j < n; j += block) {
-      const int columns = std::min(block, n - j), below = n - j - columns;
+      const int columns = lower.columns_of_strip(j), below = n - j - columns;
       pace_.add(static_cast<std::size_t>(n) * columns);
+      const Eigen::Map<const Eigen::MatrixXd> strip(values + lower.begin(j), n - j, columns);
       for (int i = 0; i < j; i += block)
-        all.block(i, j, block, columns) = lower.block(j, i, columns, block).transpose();
-      all.block(j, j, columns, columns) = lower.block(j, j, columns, columns).selfadjointView<Eigen::Lower>();
-      all.block(j + columns, j, below, columns) = lower.block(j + columns, j, below, columns);
+        all.block(i, j, block, columns) = all.block(j, i, columns, block).transpose();
+      all.block(j, j, columns, columns) = strip.topRows(columns).selfadjointView<Eigen::Lower>();
+      all.block(j + columns, j, below, columns) = strip.bottomRows(below);
     }
     return all;
   }
 
  private:
-  static std::size_t rest_size(const Dissection::Front& front) {
-    return static_cast<std::size_t>(front.rest()) * front.rest();
-  }
+  static std::size_t rest_size(const Dissection::Front& front) { return LowerTriangle(front.rest()).size(); }
   static int depth_parity(int piece) { return std::bit_width(static_cast<unsigned>(piece)) % 2; }
   Stack& stack(int piece) { return stacks_[depth_parity(piece)]; }
 
@@ -114,7 +115,8 @@ class FrontElimination {
   void eliminate(int piece) {
     progress_.check();
     const Dissection::Front front = order_.front(piece);
-    const Target target{next_panel_, make_rest(piece, rest_size(front)), front.size(), front.pivots};
+    const Target target{next_panel_, make_rest(piece, rest_size(front)), front.size(), front.pivots,
+                        LowerTriangle(front.rest())};
     for (int k = 0; k < front.size(); ++k) {
       pace_.add(static_cast<std::size_t>(front.size() - k));
       std::fill_n(target[k] + k, front.size() - k, 0.);
@@ -133,17 +135,17 @@ class FrontElimination {
   }
 
   /// A front while it is assembled and factored; of its symmetric matrix the lower triangle is kept, the
-  /// columns of the pivots apart from the square of the rest.
+  /// columns of the pivots apart from the rest.
   struct Target {
     double* columns;
     double* rest;
     int size, pivots;
+    LowerTriangle of_rest;
 
     /// A column, to be indexed with rows from the diagonal on.
     double* operator[](int j) const {
-      const std::ptrdiff_t left = size - pivots;
       return j < pivots ? columns + static_cast<std::ptrdiff_t>(j) * size
-                        : rest + (j - pivots) * left - pivots;
+                        : of_rest.column(rest, j - pivots) - pivots;
     }
   };
 
@@ -178,21 +180,26 @@ class FrontElimination {
     const Dissection::Front front = order_.front(half);
     const std::span<const int> unknowns = front.remaining();
     const int n = front.rest();
+    const LowerTriangle lower(n);
     places_.resize(n);
     for (int k = 0; k < n; ++k) places_[k] = position_[unknowns[k]];
     for (int j = 0; j < n; ++j) {
       double* column = target[places_[j]];
-      const double* own = values + static_cast<std::ptrdiff_t>(j) * n;
+      const double* own = lower.column(values, j);
       pace_.add(static_cast<std::size_t>(n));
       for (int i = j; i < n; ++i) column[places_[i]] += own[i];
     }
   }
 
   void factor(const Target& front) {
-    const int m = front.size, p = front.pivots, rest = m - p;
+    const int m = front.size, p = front.pivots;
     if (m <= kSmall) return factor_small(front);
     const auto update_rest = [&](int begin, int width) {
-      subtract_square(rest, rest, width, front[begin] + p, m, front.rest, rest, progress_);
+      for (int j = 0; j < m - p; j += LowerTriangle::kStrip) {
+        const int rows = front.of_rest.rows_of_strip(j);
+        subtract_square(rows, front.of_rest.columns_of_strip(j), width, front[begin] + p + j, m,
+                        front.rest + front.of_rest.begin(j), rows, progress_);
+      }
     };
     if (!eliminate_in_blocks(m, p, front.columns, m, progress_, update_rest)) throw NotPositiveDefinite();
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <regex>
 #include <sstream>
@@ -19,8 +20,9 @@ namespace {
 Solution two_triangles(int components, const Eigen::MatrixXd& displacement) {
   Solution solution;
   solution.components = components;
-  solution.mesh = make_mesh({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {"left", "other"},
-                            {{{3, 0}, 0}, {{0, 1}, 1}, {{1, 2}, 1}, {{2, 3}, 1}});
+  solution.mesh = std::make_shared<const Mesh>(
+      make_mesh({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {"left", "other"},
+                {{{3, 0}, 0}, {{0, 1}, 1}, {{1, 2}, 1}, {{2, 3}, 1}}));
   solution.displacement = displacement;
   solution.displacement_at_points = Eigen::MatrixXd::Zero(components, 4);
   solution.stress_at_centroids = Eigen::MatrixXd::Ones(components + 1, 2);

@@ -1,6 +1,7 @@
 #include "api/result/result_document.hpp"
 
 #include <cmath>
+#include <memory>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -24,8 +25,9 @@ using testing::UnorderedElementsAre;
 Solution small_solution(Scheme scheme) {
   Solution solution;
   solution.scheme = scheme;
-  solution.mesh = make_mesh({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {"left", "bottom"},
-                            {{{3, 0}, 0}, {{0, 1}, 1}, {{1, 2}, 1}, {{2, 3}, 1}});
+  solution.mesh = std::make_shared<const Mesh>(
+      make_mesh({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}, {"left", "bottom"},
+                {{{3, 0}, 0}, {{0, 1}, 1}, {{1, 2}, 1}, {{2, 3}, 1}}));
   const int corners = scheme == Scheme::conforming ? 3 : 1;
   solution.displacement = Eigen::MatrixXd::Constant(corners, 2, 0.5);
   solution.displacement(0, 1) = 0.1;

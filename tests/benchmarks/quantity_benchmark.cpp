@@ -70,7 +70,7 @@ void standard_intervals(benchmark::State& state, Problem (*make)(Scheme, int), S
     Observer indifferent;
     Last used;
     const double with = seconds_of([&] { solution = solve(problem, exactly, indifferent, used); });
-    const Discretization discretization(problem, solution.mesh);
+    const Discretization discretization(problem, *solution.mesh);
     const std::shared_ptr<const ElementTree> tree = used.last->factor().tree();
     used.last.reset();
     Progress progress(indifferent, {});

@@ -20,7 +20,7 @@ Claim claim_of(const std::string& problem) {
 
 Ending run_within(double bytes, const SolveFunction& solve) {
   LiveSolve live(std::chrono::system_clock::now());
-  return run(claim_of(paper_problem(32).dump()), solve, live, bytes, Factorization::multifrontal);
+  return run(claim_of(paper_problem(64).dump()), solve, live, bytes, Factorization::multifrontal);
 }
 
 Solution solve_alone(const api::Request& request, Observer& observer) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <new>
 #include <thread>
 
@@ -29,8 +30,8 @@ Solution solution_of(int iterations) {
 Solution with_contact(int components) {
   Solution solution = solution_of(3);
   solution.components = components;
-  solution.mesh = make_mesh({{0, 0}, {1, 0}, {0, 1}}, {{0, 1, 2}}, {"floor", "other"},
-                            {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}});
+  solution.mesh = std::make_shared<const Mesh>(make_mesh(
+      {{0, 0}, {1, 0}, {0, 1}}, {{0, 1, 2}}, {"floor", "other"}, {{{0, 1}, 0}, {{1, 2}, 1}, {{2, 0}, 1}}));
   solution.displacement = Eigen::VectorXd::Constant(components, 0.25);
   solution.displacement_at_points = Eigen::MatrixXd::Constant(components, 3, 0.25);
   solution.stress_at_centroids = Eigen::VectorXd::Constant(components + 1, 1);

@@ -126,6 +126,12 @@ class Filler {
     matrix.resize(rows == Eigen::Dynamic ? 3 : rows, columns == Eigen::Dynamic ? 2 : columns);
     for (double& coefficient : matrix.reshaped()) (*this)(coefficient);
   }
+  template <typename Value>
+  void operator()(std::shared_ptr<const Value>& shared) {
+    Value value;
+    (*this)(value);
+    shared = std::make_shared<const Value>(std::move(value));
+  }
   template <typename Struct>
   void operator()(Struct& all) {
     std::apply([&](auto&... member) { ((*this)(member), ...); }, members(all));
@@ -149,6 +155,10 @@ bool are_equal(const std::vector<Value>& a, const std::vector<Value>& b) {
 template <typename Value>
 bool are_equal(const std::optional<Value>& a, const std::optional<Value>& b) {
   return a.has_value() == b.has_value() && (!a || are_equal(*a, *b));
+}
+template <typename Value>
+bool are_equal(const std::shared_ptr<const Value>& a, const std::shared_ptr<const Value>& b) {
+  return are_equal(*a, *b);
 }
 template <int rows, int columns>
 bool are_equal(const Eigen::Matrix<double, rows, columns>& a, const Eigen::Matrix<double, rows, columns>& b) {

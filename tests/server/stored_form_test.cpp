@@ -71,8 +71,8 @@ TEST(StoredForm, ServesEveryFormatAsTheSolutionDid) {
     // No format shows these so far.
     EXPECT_EQ(read.solution->stress, ending.solution->stress);
     EXPECT_EQ(read.solution->rotation, ending.solution->rotation);
-    EXPECT_EQ(read.solution->mesh.triangle_edges, ending.solution->mesh.triangle_edges);
-    EXPECT_EQ(read.solution->mesh.edge_triangles, ending.solution->mesh.edge_triangles);
+    EXPECT_EQ(read.solution->mesh->triangle_edges, ending.solution->mesh->triangle_edges);
+    EXPECT_EQ(read.solution->mesh->edge_triangles, ending.solution->mesh->edge_triangles);
     EXPECT_EQ(written(*unpack_verdict(pack_verdict(verdict_of(ending))).summary),
               written(ending.solution->summary));
   }

@@ -79,9 +79,8 @@ class CertificateFields {
     const ContactResult found = active_set(condensed.contact(), {}, progress_);
     const Eigen::VectorXd x = condensed.traces(found.clearance, progress_);
     Recovered fields = recover(discretization_, x, progress_);
-    solution_ =
-        describe(discretization_, {fields.stress, fields.displacement, found.clearance, x, found.outcome},
-                 {ActiveSet{}, std::nullopt}, progress_);
+    Fields all{std::move(fields.stress), std::move(fields.displacement), found.clearance, x, found.outcome};
+    solution_ = describe(discretization_, mesh, all, {ActiveSet{}, std::nullopt}, progress_);
     ShapeNorms norms;
     add_bound(
         problem, [&] { return certify(discretization_, solution_, x, norms, progress_); }, solution_,

@@ -120,9 +120,9 @@ double distance(const Problem& problem, const Solution& coarse, const Solution& 
   const RaviartThomas &element = spaces_of(coarse.scheme, 1).row, &finer = spaces_of(fine.scheme, 1).row;
   return std::sqrt(integrate(fine, [&](int t, const AffineMap& map, const Point& reference) {
     const int parent = t >> (2 * refinements);
-    const AffineMap parent_map(coarse.mesh.corners(parent));
+    const AffineMap parent_map(coarse.mesh->corners(parent));
     const Point x = map(reference);
-    const Point there = parent_map.jacobian.inverse() * (x - coarse.mesh.corners(parent)[0]);
+    const Point there = parent_map.jacobian.inverse() * (x - coarse.mesh->corners(parent)[0]);
     const Vector difference = finer.values(map, reference) * fine.stress.col(t) -
                               element.values(parent_map, there) * coarse.stress.col(parent);
     const auto compliance = compliance_at(problem.material, x);

@@ -23,7 +23,7 @@ class Parts : public testing::TestWithParam<Scheme> {};
 /// On Γ_C the traction is −p* d with p* ≥ 0.
 void expect_pressure(const SolvedProblem& made, const EdgeTractions& tractions,
                      const ContactPressure& pressure) {
-  const Mesh& mesh = made.solution.mesh;
+  const Mesh& mesh = *made.solution.mesh;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
     const ContactEdge& contact = made.discretization.clearance.edges[i];
     const int t = mesh.edge_triangles[contact.edge][0], e = mesh.local_edge(t, contact.edge);
@@ -42,7 +42,7 @@ void expect_balance(const SolvedProblem& made, const ContactPressure& pressure,
                     const EdgeTractions& tractions) {
   EXPECT_TRUE(tractions.unmet().empty());
   expect_pressure(made, tractions, pressure);
-  const Mesh& mesh = made.solution.mesh;
+  const Mesh& mesh = *made.solution.mesh;
   for (int t = 0; t < made.discretization.triangles(); ++t) {
     const auto corners = mesh.corners(t);
     const Point centroid = (corners[0] + corners[1] + corners[2]) / 3;
@@ -131,9 +131,9 @@ void expect_admissible(const SolvedProblem& made, const ContactPressure& pressur
   double force = 0, change = 0, moment_of_change = 0;
   for (std::size_t i = 0; i < pressure.at_ends.size(); ++i) {
     const int edge = made.discretization.clearance.edges[i].edge;
-    const auto& [a, b] = made.solution.mesh.edges[edge];
-    const double length = made.solution.mesh.length(edge);
-    const double x = made.solution.mesh.points[a].x(), y = made.solution.mesh.points[b].x();
+    const auto& [a, b] = made.solution.mesh->edges[edge];
+    const double length = made.solution.mesh->length(edge);
+    const double x = made.solution.mesh->points[a].x(), y = made.solution.mesh->points[b].x();
     const auto [p, q] = pressure.at_ends[i];
     const auto [dp, dq] = pressure.changes[i];
     EXPECT_GE(std::min(p, q), 0);
@@ -177,12 +177,12 @@ TEST(AdmissibleDisplacement, MeetsEveryConditionAtEveryPoint) {
     const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
     const AdmissibleDisplacement v = made.displacement();
     EXPECT_TRUE(v.unmet().empty());
-    for (const BoundaryPart& part : made.solution.mesh.boundary)
+    for (const BoundaryPart& part : made.solution.mesh->boundary)
       for (const int edge : part.edges)
         for (const double s : {0., 0.1, 0.37, 0.5, 0.83, 1.}) {
-          const auto& [a, b] = made.solution.mesh.edges[edge];
-          const Point x = made.solution.mesh.points[a] +
-                          s * (made.solution.mesh.points[b] - made.solution.mesh.points[a]);
+          const auto& [a, b] = made.solution.mesh->edges[edge];
+          const Point x = made.solution.mesh->points[a] +
+                          s * (made.solution.mesh->points[b] - made.solution.mesh->points[a]);
           const double value = v.on_edge(edge, s)[0];
           if (part.name == "left") {
             EXPECT_NEAR(value, fixed(x, {}), 1e-9);

@@ -100,7 +100,7 @@ TEST(Patch, OpenContactIsATractionFreeSide) {
 TEST(Stress, NormalTracesAreContinuous) {
   for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming}) {
     const Solution solution = solve(problems::paper(scheme, 8), {ActiveSet{}, {}});
-    const Mesh& mesh = solution.mesh;
+    const Mesh& mesh = *solution.mesh;
     const RaviartThomas& element = spaces_of(scheme, 1).row;
     for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
       if (mesh.edge_triangles[edge][1] < 0) continue;
@@ -175,7 +175,7 @@ TEST(Meshes, LargestEdgeIsKept) {
     for (const double size : {0.5, 0.1, 0.033}) {
       Problem problem = problems::paper(Scheme::nonconforming, 1);
       problem.mesh = {LargestEdge{size}, pattern};
-      const Mesh mesh = solve(problem, {ActiveSet{}, {}}).mesh;
+      const Mesh mesh = *solve(problem, {ActiveSet{}, {}}).mesh;
       double longest = 0;
       for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge)
         longest = std::max(longest, mesh.length(edge));

@@ -87,7 +87,7 @@ double distance(const Problem& problem, const Solution& coarse, const Solution& 
   };
   return std::sqrt(integrate(fine, [&](int t, const AffineMap& map, const Point& reference) {
     const int parent = t >> (2 * refinements);
-    const AffineMap around(coarse.mesh.corners(parent));
+    const AffineMap around(coarse.mesh->corners(parent));
     const Point there = around.jacobian.inverse() * (map(reference) - around.origin);
     const Eigen::Vector4d rest = stress(finer, map, reference, fine.stress.col(t)) -
                                  stress(element, around, there, coarse.stress.col(parent));
@@ -220,7 +220,7 @@ TEST(ContactThatBends, IsSolvedAsWellAsContactThatDoesNot) {
     if (refine > 0) continue;
     // A row for either side of each corner, in the order along the part.
     Problem other = problem;
-    other.domain = renumbered(solution.mesh);
+    other.domain = renumbered(*solution.mesh);
     other.mesh = {};
     for (const Solution& each : {solution, solved(other)}) {
       const auto arc = std::ranges::find(each.contact, "arc", &ContactPart::name);
@@ -381,12 +381,12 @@ TEST(ContactPressure, IsSteepOnASingleEdgeThatTouches) {
     ASSERT_FALSE(solution.admissible_pressure.empty());
     for (const EdgePressure& own : solution.admissible_pressure) {
       EXPECT_GE(std::min(own.at_ends[0], own.at_ends[1]), 0);
-      const auto& [a, b] = solution.mesh.edges[own.edge];
+      const auto& [a, b] = solution.mesh->edges[own.edge];
       constexpr int parts = 100'000;
       for (int i = 0; i < parts; ++i) {
-        const double s = (i + 0.5) / parts, share = own(s) * solution.mesh.length(own.edge) / parts;
+        const double s = (i + 0.5) / parts, share = own(s) * solution.mesh->length(own.edge) / parts;
         force += share;
-        moment += share * ((1 - s) * solution.mesh.points[a].x() + s * solution.mesh.points[b].x());
+        moment += share * ((1 - s) * solution.mesh->points[a].x() + s * solution.mesh->points[b].x());
       }
     }
     const Reaction& reaction = solution.summary.parts.front().part == "bottom"

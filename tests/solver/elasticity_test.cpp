@@ -84,7 +84,7 @@ double relative_stress_error(Scheme scheme, double poisson, int n, double* rotat
     *rotation = std::sqrt(integrate(solution, [&](int t, const AffineMap& map, const Point& x) {
       const LocalVector hats = triangle_basis(1, x);
       double value = 0;
-      for (int z = 0; z < 3; ++z) value += hats[z] * solution.rotation[solution.mesh.triangles[t][z]];
+      for (int z = 0; z < 3; ++z) value += hats[z] * solution.rotation[solution.mesh->triangles[t][z]];
       return std::pow(value - smooth.rotation(map(x)), 2);
     }));
   return std::sqrt(error / norm);

@@ -12,6 +12,7 @@
 
 #include "system/cholmod.hpp"
 #include "system/dense_cholesky.hpp"
+#include "system/lower_triangle.hpp"
 #include "system/multifrontal.hpp"
 #include "system/symmetric_product.hpp"
 
@@ -269,6 +270,21 @@ TEST(DenseCholesky, LongWorkEndsWhenTheObserverDoes) {
   EXPECT_THROW(DenseCholesky(s, all, ends), Cancelled);
   EXPECT_THROW(factor.solve(x, ends), Cancelled);
   EXPECT_THROW(symmetric_product(s, x, ends), Cancelled);
+}
+
+TEST(LowerTriangle, HasAPlaceForEachNumberAndHardlyMore) {
+  for (int rows = 0; rows < 400; rows += rows < 20 ? 1 : 37) {
+    SCOPED_TRACE(rows);
+    const LowerTriangle lower(rows);
+    std::vector<int> taken(lower.size(), 0);
+    for (int j = 0; j < rows; ++j)
+      for (int i = j; i < rows; ++i) ++taken.at(lower.column(taken.data(), j) + i - taken.data());
+    EXPECT_EQ(std::ranges::count(taken, 1), rows * (rows + 1) / 2);
+    EXPECT_EQ(std::ranges::count_if(taken, [](int times) { return times > 1; }), 0);
+    EXPECT_GE(numbers_of_lower_triangle(rows), static_cast<double>(lower.size()));
+    EXPECT_LE(lower.size(), static_cast<std::size_t>(rows) * (rows + LowerTriangle::kStrip) / 2 +
+                                LowerTriangle::kStrip * LowerTriangle::kStrip);
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(HeldByContactAlone, UniformLoadOnOneSideIsKnown) {
     EXPECT_NEAR(solution.contact[0].pressure[i], 1, 1e-11);
   for (int t = 0; t < solution.displacement.cols(); ++t) {
     const Point centroid =
-        (solution.mesh.corners(t)[0] + solution.mesh.corners(t)[1] + solution.mesh.corners(t)[2]) / 3;
+        (solution.mesh->corners(t)[0] + solution.mesh->corners(t)[1] + solution.mesh->corners(t)[2]) / 3;
     EXPECT_NEAR(solution.stress_at_centroids(1, t), -1 + centroid.y(), 1e-10);
   }
 }

@@ -757,6 +757,25 @@ TEST_P(Memory, OfTinyHolesFarFromEachOther) {
   }
 }
 
+/// Found from outside: the pieces of all of a floor like a saw touch, and are cut for their angles.
+TEST_P(Memory, OfASaw) {
+  const int teeth = long_tests() ? 581 : 332;
+  Polygon saw;
+  for (int i = 0; i <= 2 * teeth; ++i)
+    saw.vertices.push_back({static_cast<double>(i) / teeth, i % 2 == 0 ? 0 : 11. / teeth});
+  saw.sides.assign(saw.vertices.size() + 2, "floor");
+  for (const Point& corner : {Point(2, 1), Point(0, 1)}) saw.vertices.push_back(corner);
+  saw.sides[saw.sides.size() - 2] = "top";
+  for (Problem problem : {membrane(GetParam(), 1, 1), elastic(GetParam(), 1, 1)}) {
+    problem = in_polygon(problem, 0.0463);
+    problem.domain = saw;
+    problem.boundary = {{"top", Fixed{}}, {"floor", Contact{Field(0.01)}}};
+    const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}).memory_bytes;
+    EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes),
+              predicted);
+  }
+}
+
 /// Of which a coarser mesh shows the shape, but not the cuts.
 TEST_P(Memory, OfAnAngle) {
   Problem angle = in_polygon(elastic(GetParam(), 1, 1), 0.0615);

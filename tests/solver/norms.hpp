@@ -15,8 +15,8 @@ namespace signorini {
 template <typename Visit>
 double integrate(const Solution& solution, const Visit& visit) {
   double sum = 0;
-  for (int t = 0; t < static_cast<int>(solution.mesh.triangles.size()); ++t) {
-    const AffineMap map(solution.mesh.corners(t));
+  for (int t = 0; t < static_cast<int>(solution.mesh->triangles.size()); ++t) {
+    const AffineMap map(solution.mesh->corners(t));
     for (int q = 0; q < TriangleRule::size; ++q)
       sum += triangle_rule().weights[q] * map.determinant * visit(t, map, triangle_rule().points[q]);
   }
@@ -74,9 +74,9 @@ inline std::vector<std::pair<double, double>> clearance_along(const ContactPart&
 inline double contact_term(const Solution& coarse, const Solution& fine) {
   double sum = 0;
   for (const EdgePressure& pressure : coarse.admissible_pressure) {
-    const auto& [first, second] = coarse.mesh.edges[pressure.edge];
-    const Point a = coarse.mesh.points[first];
-    const Vector way = coarse.mesh.points[second] - a;
+    const auto& [first, second] = coarse.mesh->edges[pressure.edge];
+    const Point a = coarse.mesh->points[first];
+    const Vector way = coarse.mesh->points[second] - a;
     for (const ContactPart& part : fine.contact) {
       const auto clearance = clearance_along(part, a, way);
       for (std::size_t i = 1; i < clearance.size(); ++i) {

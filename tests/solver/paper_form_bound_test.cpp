@@ -67,17 +67,17 @@ TEST(EnergyNorm, OfAStressCountsTheLawWithinATriangle) {
   Observer observer;
   Progress progress(observer, std::nullopt);
   const Solution solution = solve(problem, {ActiveSet{}, {}});
-  const Discretization discretization(problem, solution.mesh);
+  const Discretization discretization(problem, *solution.mesh);
   // The outward fluxes of (1, 0), from the corners of each triangle.
   Eigen::MatrixXd stress(3, discretization.triangles());
   for (int t = 0; t < discretization.triangles(); ++t) {
-    const auto corners = solution.mesh.corners(t);
+    const auto corners = solution.mesh->corners(t);
     for (int e = 0; e < 3; ++e) stress(e, t) = corners[(e + 2) % 3].y() - corners[(e + 1) % 3].y();
   }
   double integral = 0;
   constexpr int n = 100'000;
   for (int i = 0; i < n; ++i) integral += 1 / (1 + 0.5 * std::sin(9 * (i + 0.5) / n)) / n;
-  const LawOnMesh laws(problem.material, solution.mesh, 1e-8, progress);
+  const LawOnMesh laws(problem.material, *solution.mesh, 1e-8, progress);
   const double square = energy_norm_squares(discretization, stress, laws, progress).sum();
   EXPECT_GE(square, integral * (1 - 1e-9));
   EXPECT_NEAR(square, integral, 1e-6 * integral);

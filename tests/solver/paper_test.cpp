@@ -73,8 +73,8 @@ TEST(Paper, EnergiesOfAnIndependentProgram) {
 }
 
 double at(const Solution& solution, const Point& x) {
-  for (std::size_t p = 0; p < solution.mesh.points.size(); ++p)
-    if ((solution.mesh.points[p] - x).norm() < 1e-12) return solution.displacement_at_points(0, p);
+  for (std::size_t p = 0; p < solution.mesh->points.size(); ++p)
+    if ((solution.mesh->points[p] - x).norm() < 1e-12) return solution.displacement_at_points(0, p);
   ADD_FAILURE() << "no point at " << to_string(x);
   return 0;
 }

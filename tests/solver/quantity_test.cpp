@@ -584,7 +584,8 @@ class DualPairs {
       : problem_(problem),
         condensed_(problem_, requested_mesh(problem_, progress_), Factorization::multifrontal, progress_),
         fields_(condensed_.find(ActiveSet{}, progress_)),
-        solution_(describe(discrete(), fields_, {ActiveSet{}, {}}, progress_)),
+        solution_(describe(discrete(), condensed_.used_operator()->shared_mesh(), fields_, {ActiveSet{}, {}},
+                           progress_)),
         laws_(problem_.material, discrete().mesh, 1e-5, progress_),
         base_(discrete(), solution_, admissible_pair(discrete(), solution_, fields_.coupling, progress_),
               load_remainders(discrete(), progress_), laws_, progress_),
@@ -609,7 +610,7 @@ class DualPairs {
   Progress progress_{observer_, std::nullopt};
   const Problem problem_;
   CondensedProblem condensed_;
-  const Fields fields_;
+  Fields fields_;
   const Solution solution_;
   const LawOnMesh laws_;
   const CertifiedSolution base_;

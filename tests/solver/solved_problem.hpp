@@ -9,7 +9,7 @@ namespace signorini {
 /// A solved problem with what its certificate is made from.
 struct SolvedProblem {
   SolvedProblem(const Problem& posed, const Solution& solved)
-      : problem(posed), solution(solved), discretization(problem, solution.mesh) {
+      : problem(posed), solution(solved), discretization(problem, *solution.mesh) {
     clearance.resize(discretization.clearance.rows.size());
     Eigen::Index next = 0;
     for (const ContactPart& part : solution.contact)

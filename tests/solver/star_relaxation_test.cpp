@@ -98,7 +98,7 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
   LawField<2> law(solved.problem.material);
   double sum = 0;
   for (int t = 0; t < solved.discretization.triangles(); ++t) {
-    const AffineMap map(solved.solution.mesh.corners(t));
+    const AffineMap map(solved.solution.mesh->corners(t));
     const JohnsonMercierRule& rule = johnson_mercier_rule(solved.discretization.spaces(), 10);
     const std::vector<SymmetricLaw> laws = laws_at(solved.discretization, rule, map, law);
     JohnsonMercierFields<1> fields(
@@ -112,7 +112,7 @@ double distance_square(const SolvedProblem& solved, const EdgeTractions& tractio
 
 /// ½ ‖ε(v)‖²_E − (f, v), with what v is inside the macro-elements.
 double energy(const SolvedProblem& solved, const AdmissibleDisplacement& v, const EdgeTractions& tractions) {
-  const LawOnMesh laws(solved.problem.material, solved.solution.mesh, 1e-8, solved.progress);
+  const LawOnMesh laws(solved.problem.material, *solved.solution.mesh, 1e-8, solved.progress);
   ShapeNorms norms;
   ElasticSums sums(solved.discretization, solved.solution, v, tractions, norms);
   LawField<2> law(solved.problem.material);
@@ -161,7 +161,7 @@ TEST(DisplacementRelaxation, LowersTheEnergyAndKeepsWhatIsGiven) {
       v.relax_on_stars(1, solved.progress);
       EXPECT_TRUE(v.unmet().empty());
       EXPECT_LT(energy(solved, v, tractions), before);
-      const Mesh& mesh = solved.solution.mesh;
+      const Mesh& mesh = *solved.solution.mesh;
       const bool rolls = problem.boundary.contains("right");
       for (const BoundaryPart& part : mesh.boundary)
         for (const int edge : part.edges)

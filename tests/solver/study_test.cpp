@@ -117,8 +117,8 @@ TEST(Study, TheTotalErrorHasBothContactTerms) {
   const Solution solution = solve(problem, active_set);
   double expected = 0;
   for (const EdgePressure& pressure : solution.admissible_pressure) {
-    const auto& [a, b] = solution.mesh.edges[pressure.edge];
-    const double from = solution.mesh.points[a].x(), to = solution.mesh.points[b].x();
+    const auto& [a, b] = solution.mesh->edges[pressure.edge];
+    const double from = solution.mesh->points[a].x(), to = solution.mesh->points[b].x();
     constexpr int parts = 10'000;
     for (int i = 0; i < parts; ++i) {
       const double s = (i + 0.5) / parts, x = from + s * (to - from);
@@ -137,7 +137,7 @@ TEST(Study, TheContactTermOfAnElasticBodyIsTakenAlongTheDirection) {
   const Exact exact{VectorField(-0.05, 0.1), {0, 0, 0}, solution.summary.error_bound->energy_lower};
   double force = 0;
   for (const EdgePressure& pressure : solution.admissible_pressure)
-    force += solution.mesh.length(pressure.edge) * pressure(0.5);
+    force += solution.mesh->length(pressure.edge) * pressure(0.5);
   // g − u_d = 0.1 + (3 · 0.05 + 4 · 0.1) / 5.
   EXPECT_GT(force, 0.1);
   EXPECT_NEAR(contact_term(problem, exact, solution), 2 * force * 0.21, 1e-9 * force);

@@ -361,7 +361,7 @@ class ElasticFields {
         tractions_(made_.discretization, made_.solution.stress,
                    {made_.discretization, made_.solution.stress, made_.clearance}) {}
 
-  const Mesh& mesh() const { return made_.solution.mesh; }
+  const Mesh& mesh() const { return *made_.solution.mesh; }
   const AdmissibleDisplacement& v() const { return v_; }
   int triangles() const { return made_.discretization.triangles(); }
   const Discretization& discretization() const { return made_.discretization; }

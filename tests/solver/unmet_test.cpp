@@ -108,7 +108,7 @@ TEST(Guaranteed, IsTheContactTermOfAPressureThatTakesWhatIsNotKnown) {
   const SolvedProblem made(problem, solve(problem, {ActiveSet{}, {}}));
   const ErrorBound bound = made.solution.summary.error_bound.value();
   EXPECT_TRUE(bound.guaranteed);
-  const LawOnMesh laws(problem.material, made.solution.mesh, 1e-8, made.progress);
+  const LawOnMesh laws(problem.material, *made.solution.mesh, 1e-8, made.progress);
   const double change = carry_uncertain_loads(made.discretization, laws,
                                               {made.discretization, made.solution.stress, made.clearance})
                             .change_of_pressure;
