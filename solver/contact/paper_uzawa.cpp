@@ -47,6 +47,10 @@ void UzawaIteration::eliminate(Factorization by, Progress& progress) {
   divergence_.resize(nv * nv, triangles);
   load_.resize(nv, triangles);
   stiffness_of_.assign(triangles, -1);
+  int held = 0;
+  for (int t = 0; t < triangles; ++t)
+    if (!is_free(t)) stiffness_of_[t] = held++;
+  stiffness_.reserve(static_cast<std::size_t>(n) * n * held);
   ElementSum matrix;
   matrix.size = discrete_.traces.free_unknowns();
   matrix.per_element = n;
@@ -61,28 +65,38 @@ void UzawaIteration::eliminate(Factorization by, Progress& progress) {
     load_.col(t).noalias() = shape.mass_inverse.lazyProduct(discrete_.load.col(t));
     coupling_.col(t) = shape.coupling.reshaped();
     divergence_.col(t) = shape.divergence.reshaped();
-    if (add_free(matrix, t, shape.stiffness)) continue;
-    stiffness_of_[t] = static_cast<int>(stiffness_.size());
-    stiffness_.push_back(shape.stiffness);
+    add_free(matrix, t, shape.stiffness);
+    if (stiffness_of_[t] >= 0)
+      stiffness_.insert(stiffness_.end(), shape.stiffness.data(), shape.stiffness.data() + n * n);
   }
   progress.enter(Phase::factorize);
   factor_ = std::make_unique<const Factor>(factorize(matrix, 0, by, progress));
 }
 
-/// Adds the stiffness of a triangle between its free unknowns; true if all of them are.
-bool UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stiffness) const {
+/// Whether all unknowns of a triangle are.
+bool UzawaIteration::is_free(int t) const {
+  const TraceSpace& traces = discrete_.traces;
+  for (int i = 0; i < traces.dofs_per_triangle(); ++i)
+    if (!traces.is_free(traces.dof(t, i))) return false;
+  return true;
+}
+
+Eigen::Map<const Eigen::MatrixXd> UzawaIteration::stiffness(int t) const {
+  const std::ptrdiff_t n = discrete_.traces.dofs_per_triangle();
+  return {stiffness_.data() + n * n * stiffness_of_[t], n, n};
+}
+
+/// Adds the stiffness of a triangle between its free unknowns.
+void UzawaIteration::add_free(ElementSum& matrix, int t, const LocalMatrix& stiffness) const {
   const TraceSpace& traces = discrete_.traces;
   LocalMatrix turned = stiffness;
   if (traces.is_turned(t)) turned = traces.to_xy(t).transpose() * stiffness * traces.to_xy(t);
-  bool all = true;
   for (int i = 0; i < traces.dofs_per_triangle(); ++i) {
     const int dof = traces.dof(t, i);
-    all = all && traces.is_free(dof);
     matrix.unknowns.push_back(traces.is_free(dof) ? traces[dof].unknown : -1);
   }
   matrix.matrix_of.push_back(matrix.keep(turned.data()));
   matrix.centres.push_back(discrete_.mesh.centroid(t));
-  return all;
 }
 
 void UzawaIteration::start() {
@@ -120,7 +134,7 @@ void UzawaIteration::solve_first_equation(Progress& progress) {
   for (int t = 0; t < discrete_.triangles(); ++t) {
     // t − E σ of the data alone: P (u + r Πf) − K_r m with the free traces at 0.
     LocalVector flux = local(coupling_, t, n).lazyProduct(augmented_.col(t));
-    if (stiffness_of_[t] >= 0) flux -= stiffness_[stiffness_of_[t]] * discrete_.traces.values(t, given_);
+    if (stiffness_of_[t] >= 0) flux -= stiffness(t).lazyProduct(discrete_.traces.values(t, given_));
     if (discrete_.traces.is_turned(t)) flux = (discrete_.traces.to_xy(t).transpose() * flux).eval();
     for (int j = 0; j < n; ++j) {
       const int dof = discrete_.traces.dof(t, j);
@@ -154,7 +168,7 @@ void UzawaIteration::update_pressure() {
 }
 
 LocalVector UzawaIteration::flux_on_contact(int t) const {
-  LocalVector flux = stiffness_[stiffness_of_[t]].lazyProduct(discrete_.traces.values(t, x_));
+  LocalVector flux = stiffness(t).lazyProduct(discrete_.traces.values(t, x_));
   flux -= local(coupling_, t, static_cast<int>(flux.size())).lazyProduct(augmented_.col(t));
   return flux;
 }

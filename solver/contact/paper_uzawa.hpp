@@ -35,7 +35,7 @@ class UzawaIteration {
 
  private:
   void eliminate(Factorization by, Progress& progress);
-  bool add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
+  void add_free(ElementSum& matrix, int triangle, const LocalMatrix& stiffness) const;
   void start();
   void augment(const Eigen::MatrixXd& displacement);
   void solve_first_equation(Progress& progress);
@@ -44,14 +44,16 @@ class UzawaIteration {
   Iteration record();
   void update_pressure();
   LocalVector flux_on_contact(int triangle) const;
+  bool is_free(int triangle) const;
+  Eigen::Map<const Eigen::MatrixXd> stiffness(int triangle) const;
 
   const Discretization& discrete_;
   const PaperUzawa settings_;
 
   std::unique_ptr<const Factor> factor_;
   Factor::Workspace workspace_;
-  std::vector<LocalMatrix> stiffness_;     ///< K_r of the triangles on Γ_D or Γ_C only
-  std::vector<int> stiffness_of_;          ///< its index for each triangle, or -1
+  std::vector<double> stiffness_;          ///< K_r of the triangles on Γ_D or Γ_C only, one after the other
+  std::vector<int> stiffness_of_;          ///< its number for each triangle, or -1
   Eigen::MatrixXd coupling_, divergence_;  ///< P and D, a column a triangle
   Eigen::MatrixXd load_;                   ///< Π_V f, a column a triangle
   LocalMatrix mass_inverse_;               ///< (v_i, v_j)⁻¹ times det J

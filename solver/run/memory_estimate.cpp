@@ -327,10 +327,11 @@ double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const 
   free.contact = 0;
   const FactorBytes made = factor_of(problem, spaces, free, by, true);
   const double own = dofs_per_triangle(spaces), displacements = spaces.displacements();
-  // P and D, and the fields of an iterate.
+  // P and D, and the fields of an iterate; and K_r at each edge of the boundary.
   const double iteration = kNumber * displacements * (own + displacements + 5);
+  const double at_boundary = kNumber * own * own * sizes.boundary;
   return slack(spaces) * (made.panels + made.fronts + while_factoring(made, spaces, free, by) +
-                          3 * kNumber * sizes.system + on_boundary(sizes) +
+                          3 * kNumber * sizes.system + on_boundary(sizes) + at_boundary +
                           sizes.triangles * (kMesh + discretization(problem.body, spaces) +
                                              element_sum(spaces, 1) + iteration));
 }

@@ -11,17 +11,21 @@
 namespace signorini {
 namespace {
 
-Solution iterate(const Problem& problem, std::shared_ptr<const Mesh> mesh, const Settings& settings,
-                 Progress& progress) {
-  const Discretization discrete(problem, *mesh, &progress);
-  held_by_contact_alone(discrete);
+/// The factor is gone with the iteration.
+Fields find_fields(const Discretization& discrete, const Settings& settings, Progress& progress) {
   progress.enter(Phase::assemble);
   UzawaIteration iteration(discrete, std::get<PaperUzawa>(settings.method), settings.factorization, progress);
   progress.enter(Phase::iterate);
   const Outcome outcome = iteration.run(progress);
   progress.found();
-  Fields fields{iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(),
-                outcome};
+  return {iteration.stress(), iteration.displacement(), iteration.clearance(), iteration.coupling(), outcome};
+}
+
+Solution iterate(const Problem& problem, std::shared_ptr<const Mesh> mesh, const Settings& settings,
+                 Progress& progress) {
+  const Discretization discrete(problem, *mesh, &progress);
+  held_by_contact_alone(discrete);
+  Fields fields = find_fields(discrete, settings, progress);
   return describe(discrete, std::move(mesh), fields, settings, progress);
 }
 

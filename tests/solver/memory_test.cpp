@@ -757,6 +757,20 @@ TEST_P(Memory, OfTinyHolesFarFromEachOther) {
   }
 }
 
+/// Found from outside: whose triangles are all on Γ_D.
+TEST_P(Memory, OfThePapersIterationOnAThinBody) {
+  const int x = long_tests() ? 10'000 : 2000;
+  for (Problem strip : {membrane(GetParam(), x, 1), elastic(GetParam(), x, 1)}) {
+    strip.domain = Rectangle{{0, 0}, {static_cast<double>(x), 1}};
+    strip.boundary = {{"left", Contact{Field(0.01)}}, {"bottom", Fixed{}}, {"top", Fixed{}}};
+    PaperUzawa iteration;
+    iteration.rho = 0.01;
+    iteration.augmentation = 1;
+    iteration.max_iterations = 2;
+    expect_bound(strip, {iteration, std::nullopt});
+  }
+}
+
 /// Found from outside: the pieces of all of a floor like a saw touch, and are cut for their angles.
 TEST_P(Memory, OfASaw) {
   const int teeth = long_tests() ? 581 : 332;
