@@ -143,6 +143,16 @@ void Estimation::cut(const MeshData& data) {
       Shows::itself);
 }
 
+/// Before refinements. The schemes of a study have the same meshes, and coarser ones in common: of a polygon
+/// without local sizes they are found once.
+MeshSizes Estimation::sizes_by(const MeshRequest& request) {
+  if (!std::holds_alternative<Polygon>(problem_.domain) || !request.sizes.empty())
+    return (*predicted_)(request);
+  const auto [known, is_new] = of_lengths_.try_emplace(std::get<LargestEdge>(request.fineness).length);
+  if (is_new) known->second = (*predicted_)(request);
+  return known->second;
+}
+
 /// The request for edges twice as long, or four times, until the polygon's mesh has few triangles. If its
 /// vertices or its narrow places ask for more, whatever the size, it is one with twice as many, or none.
 std::optional<Estimation::Coarser> Estimation::coarser_mesh(std::int64_t triangles) {
@@ -156,7 +166,7 @@ std::optional<Estimation::Coarser> Estimation::coarser_mesh(std::int64_t triangl
   for (int attempt = 0; attempt < attempts && may_be_tried_ > 0; ++attempt, times *= 2) {
     --may_be_tried_;
     const MeshRequest request = coarser(problem_.mesh, times);
-    const std::int64_t made = (*predicted_)(request).triangles;
+    const std::int64_t made = sizes_by(request).triangles;
     if (made <= few_triangles) return Coarser{request, true};
     if (made <= most_of_own_shape && !larger) larger = {request, false};
   }
@@ -228,7 +238,7 @@ std::int64_t Estimation::contact_unknowns(const MeshSizes& sizes) const {
 /// Of the mesh that the problem asks for. Small ones are made.
 Counts Estimation::count() {
   std::optional<Mesh> mesh;
-  MeshSizes sizes = (*predicted_)(problem_.mesh);
+  MeshSizes sizes = sizes_by(problem_.mesh);
   const bool is_large = std::holds_alternative<Polygon>(problem_.domain) && sizes.triangles > few_triangles;
   const std::optional<Coarser> coarse =
       is_large && may_be_made_ > 0 ? coarser_mesh(sizes.triangles) : std::nullopt;

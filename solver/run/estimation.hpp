@@ -78,6 +78,7 @@ class Estimation {
     return components(problem_.material) == 2 && condition<Contact>(part)->direction.isZero(0);
   }
 
+  MeshSizes sizes_by(const MeshRequest& request);
   Counts count();
   Counts counts_of(const MeshSizes& sizes, std::int64_t contact) const;
   Estimate estimate_of(const Counts& counts) const;
@@ -106,6 +107,7 @@ class Estimation {
   std::int64_t may_be_cut_ = 2 * most_cut;        ///< of those, and of their refinements
   std::optional<MeshPieces> pieces_;              ///< of a mesh that is made, or given
   std::map<Scheme, MeshSizes> stabilized_;        ///< of a given mesh that is not made
+  std::map<double, MeshSizes> of_lengths_;        ///< of a polygon, by the largest edge
   bool are_alike_ = false;                        ///< pieces that are so on the mesh that is solved on
 };
 
