@@ -32,7 +32,7 @@ inline constexpr std::size_t outline_corners = 32;
 /// Of the boundary, each of which may have a condition.
 inline constexpr std::size_t parts = vertices + holes;
 
-inline constexpr int divisions = 10'000, refinements = 12, triangles = 20'000'000, iterations = 1'000'000;
+inline constexpr int divisions = 10'000, refinements = 12, triangles = most_triangles, iterations = 1'000'000;
 
 inline constexpr std::size_t sweep_entries = 10'000, study_meshes = 64, batch_problems = 1000;
 /// Of all entries of a sweep together, with those that an entry has from the problem.

@@ -123,8 +123,6 @@ struct Make {
   Mesh operator()(const MeshData& data) const { return import_mesh(data, progress); }
 };
 
-constexpr int most_triangles = 20'000'000;
-
 }  // namespace
 
 std::vector<std::string> part_names(const Domain& domain) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
+#include "mesh/most_triangles.hpp"
 #include "problem/domain.hpp"
 
 namespace signorini {
@@ -24,7 +25,7 @@ std::vector<Fault> validate(const Polygon& polygon);
 /// Every fault of the sizes that a mesh of the polygon (which has no fault) is asked for, at `/mesh/size` and
 /// `/mesh/sizes`: not positive, or so small that the mesh would surely have more triangles than allowed.
 std::vector<Fault> validate(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes,
-                            int max_triangles = 20'000'000);
+                            int max_triangles = most_triangles);
 
 /// The names of the parts in the order in which the mesh has them.
 std::vector<std::string> part_names(const Polygon& polygon);
@@ -42,6 +43,6 @@ double area(const Polygon& polygon);
 /// on their left. Equal input gives equal meshes. Throws InvalidProblem for the faults that validate names,
 /// TooManyTriangles at `/mesh/size`, and what a Progress throws, if there is one.
 Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSize>& sizes = {},
-                  int max_triangles = 20'000'000, Progress* progress = nullptr);
+                  int max_triangles = most_triangles, Progress* progress = nullptr);
 
 }  // namespace signorini

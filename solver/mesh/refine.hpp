@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesh/mesh.hpp"
+#include "mesh/most_triangles.hpp"
 
 namespace signorini {
 
@@ -11,6 +12,6 @@ class Progress;
 /// their names and the order of their edges. Throws InvalidProblem at `/mesh/refine` if there would be more
 /// triangles than allowed, and as require_upright() does, and what a Progress
 /// throws, if there is one.
-Mesh refine(const Mesh& mesh, int times, int max_triangles = 20'000'000, Progress* progress = nullptr);
+Mesh refine(const Mesh& mesh, int times, int max_triangles = most_triangles, Progress* progress = nullptr);
 
 }  // namespace signorini

@@ -133,7 +133,7 @@ TEST(ParseRequest, SaysWhatIsAllowed) {
   EXPECT_THAT(only_detail("/model", "plate"), HasSubstr("membrane"));
   EXPECT_THAT(only_detail("/material/stiffness", nullptr), HasSubstr("not null"));
   EXPECT_THAT(only_detail("/mesh/size", 0.1), HasSubstr("either size"));
-  EXPECT_THAT(only_detail("/mesh/divisions", {10000, 10000}), HasSubstr("20000000 triangles"));
+  EXPECT_THAT(only_detail("/mesh/divisions", {10000, 10000}), HasSubstr("40000000 triangles"));
   EXPECT_THAT(only_detail("/solver", {{"rho", 0.1}}), HasSubstr("rho is one"));
 }
 
