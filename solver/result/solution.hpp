@@ -176,7 +176,8 @@ struct EnclosedQuantity {
   }
 
   bool is_bounded() const { return std::isfinite(lower) && std::isfinite(upper); }
-  double relative_width() const { return (upper - lower) / std::abs(estimate); }
+  /// 0 where it is known exactly, though it be 0.
+  double relative_width() const { return upper > lower ? (upper - lower) / std::abs(estimate) : 0; }
 };
 
 /// Seconds.

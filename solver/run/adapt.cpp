@@ -19,6 +19,7 @@ namespace {
 constexpr double kLargestGrowth = 1.5;
 
 std::string in_words(double number) {
+  if (!std::isfinite(number)) return "infinite";
   std::ostringstream text;
   text.precision(3);
   text << number;
@@ -42,8 +43,8 @@ class Levels {
   /// By which the next mesh is made.
   const Eigen::VectorXd& shares() const {
     const EnclosedQuantity* quantity = goal_quantity(finest_->summary);
-    return quantity && quantity->is_bounded() && quantity->shares.size() > 0 ? quantity->shares
-                                                                             : finest_->error_squares;
+    const bool has_shares = quantity && quantity->is_bounded() && quantity->shares.sum() > 0;
+    return has_shares ? quantity->shares : finest_->error_squares;
   }
 
   void add(Solution solution) {
@@ -241,6 +242,9 @@ Solution refine_until_met(const Problem& problem, const Settings& settings, Leve
           "four times the triangles have not lowered it: raise mesh.adaptive.tolerance");
     progress.enter(Phase::mesh);
     mesh = finer_mesh(*levels.finest().mesh, levels.shares(), levels.growth(), most, progress);
+    if (mesh->triangles.size() == levels.finest().mesh->triangles.size())
+      return levels.end_above_tolerance(Outcome::tolerance_not_met,
+                                        "no triangle adds to it, so that no finer mesh has less of it");
     if (mesh->triangles.size() > most)
       return levels.end_above_tolerance(Outcome::tolerance_not_met,
                                         "the next mesh would have " + std::to_string(mesh->triangles.size()) +

@@ -337,5 +337,26 @@ TEST(Adapt, IsEstimatedAtItsCap) {
   EXPECT_LT(estimated.unknowns.stress, 76000);
 }
 
+/// Found from outside: no triangle adds to what is known exactly, and one mesh was solved for ever.
+TEST(Adaptive, EndsWhereNothingAddsToItsQuantity) {
+  for (const Scheme scheme : schemes)
+    for (const bool opens : {false, true}) {
+      Problem problem = adaptive(problems::paper(scheme, 4), 0.01, 2000);
+      Quantity nothing;
+      nothing.name = "nothing";
+      (opens ? nothing.openings : nothing.weights).emplace("bottom", Field(0));
+      problem.quantities = {nothing};
+      problem.mesh.adaptive->quantity = "nothing";
+      Settings settings = by(ActiveSet{});
+      settings.time_limit = 60;
+      const Solution solution = solve(problem, settings);
+      // The interval of a force is as wide as rounding, beside a value of 0.
+      EXPECT_EQ(solution.summary.outcome, opens ? Outcome::converged : Outcome::tolerance_not_met)
+          << solution.summary.advice;
+      EXPECT_EQ(solution.summary.quantities.at(0).value, 0);
+      EXPECT_LE(solution.summary.levels.size(), 30u);
+    }
+}
+
 }  // namespace
 }  // namespace signorini::adapt_test
