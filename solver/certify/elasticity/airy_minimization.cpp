@@ -43,7 +43,8 @@ Airy airy_of(const Eigen::Vector3d& values) {
 
 class Minimization {
  public:
-  Minimization(const Discretization& discrete, const Eigen::MatrixXd& stress, ContactPressure& pressure)
+  Minimization(const Discretization& discrete, const Eigen::MatrixXd& stress, ContactPressure& pressure,
+               Progress& progress)
       : discrete_(discrete),
         mesh_(discrete.mesh),
         pressure_(pressure),
@@ -51,7 +52,7 @@ class Minimization {
         places_(mesh_.points.size()) {
     for (int i = 0; i < static_cast<int>(discrete.clearance.edges.size()); ++i) add_side(i);
     place_unknowns();
-    assemble(stress, EdgeTractions(discrete, stress, pressure));
+    assemble(stress, EdgeTractions(discrete, stress, pressure), progress);
   }
 
   void run(const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance, Progress& progress) {
@@ -179,7 +180,7 @@ class Minimization {
     return data;
   }
 
-  void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions) {
+  void assemble(const Eigen::MatrixXd& stress, const EdgeTractions& tractions, Progress& progress) {
     const JohnsonMercierRule& rule = johnson_mercier_rule(discrete_.spaces(), 6);
     LawField<2> law(discrete_.problem.material);
     curvature_.resize(slope_.size(), slope_.size());
@@ -194,6 +195,7 @@ class Minimization {
       entries.clear();
     };
     for (int t = 0; t < discrete_.triangles(); ++t) {
+      progress.check_in(t);
       if (entries.size() > std::max(few, static_cast<std::size_t>(curvature_.nonZeros()))) add_up();
       const auto& corners = mesh_.triangles[t];
       if (std::ranges::all_of(corners, [&](int point) { return places_[point].size() == 0; })) continue;
@@ -280,7 +282,7 @@ void minimize_airy(const Discretization& discrete, const Eigen::MatrixXd& stress
                    const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance,
                    ContactPressure& pressure, Progress& progress) {
   if (pressure.airy_at_points.empty()) return;
-  Minimization(discrete, stress, pressure).run(v, clearance, progress);
+  Minimization(discrete, stress, pressure, progress).run(v, clearance, progress);
 }
 
 }  // namespace signorini
