@@ -165,6 +165,7 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
   std::vector<int> traces;
   std::vector<TriangleEdge> contact;
   EdgeTable(triangles).for_each_edge([&](const auto& sides) {
+    if (sides.size() == 1) ++boundary_edges_;
     const auto known =
         std::ranges::lower_bound(conditions, sides[0].points, {}, &decltype(conditions)::value_type::first);
     const Condition* const condition =
@@ -236,12 +237,25 @@ double MeshPieces::shapes(double triangles) const {
   return std::min(triangles, (triangles > triangles_ ? 2 : 1) * shapes_);
 }
 
+/// By how many times the edges of a leaf that is refined to so many triangles are more than those of squares,
+/// 3/2 of a triangle: where its own are, because many lie on the boundary. Each edge becomes two, and each
+/// triangle has three more inside.
+double MeshPieces::fullness(const Piece& leaf, const Spaces& spaces, double triangles) const {
+  constexpr double of_square = 1.5;
+  const double own = triangles_ / (static_cast<double>(pieces_.size() + 1) / 2);
+  const double more = std::max(0., leaf.cut.traces / spaces.components - of_square * own);
+  return 1 + more * std::sqrt(triangles / own) / (of_square * triangles);
+}
+
 /// A leaf with so many triangles more than a leaf has: its squares are cut as it lies there.
 FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double triangles,
                                double contact) const {
   const double x = std::sqrt(triangles / 2 * leaf.across), y = triangles / 2 / x;
-  return of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, 0, spaces,
-                    triangles, contact);
+  FactorBytes made = of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, 0,
+                                spaces, triangles, contact);
+  const double full = fullness(leaf, spaces, triangles);
+  made.panels *= full * full, made.stacks *= full * full, made.fronts *= full;
+  return made;
 }
 
 FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
@@ -292,6 +306,12 @@ FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, dou
     }
   }
   all.stacks = kValue * (largest[0] + largest[1] + most_shared) + stacks_of_leaf;
+  constexpr double ragged = 0.15, of_others = 2.7;
+  if (repeated && growth > 1 && boundary_edges_ > ragged * triangles_) {
+    // Its refinement is cut elsewhere, and what was alike is so no more: by so much, as measured.
+    all.panels =
+        std::min(of_others * all.panels, factor_bytes(spaces, triangles, contact_unknowns, false).panels);
+  }
   return all;
 }
 

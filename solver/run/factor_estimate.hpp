@@ -69,9 +69,10 @@ class MeshPieces {
     Vector extent;              ///< of a leaf,
     double across;              ///< and by how many times more triangles lie along x than along y
   };
+  double fullness(const Piece& leaf, const Spaces& spaces, double triangles) const;
   FactorBytes within(const Piece& leaf, const Spaces& spaces, double triangles, double contact) const;
 
-  double triangles_, shapes_ = 0, contact_edges_ = 0;
+  double triangles_, shapes_ = 0, boundary_edges_ = 0, contact_edges_ = 0;
   std::vector<Piece> pieces_;  ///< the halves before the whole
 };
 

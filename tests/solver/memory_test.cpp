@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -754,6 +755,43 @@ TEST_P(Memory, OfTinyHolesFarFromEachOther) {
     Problem problem = in_polygon(membrane(GetParam(), 1, 1), row);
     problem.domain = plate;
     expect_bound(problem);
+  }
+}
+
+/// Squares with holes in between, as large as they; what is free of it is `rim`.
+MeshData sieve(int squares) {
+  MeshData data;
+  const auto at = [&](int i, int j) { return i * (squares + 1) + j; };
+  for (int i = 0; i <= squares; ++i)
+    for (int j = 0; j <= squares; ++j) data.points.push_back({1. * i / squares, 1. * j / squares});
+  std::map<std::array<int, 2>, int> sides;
+  for (int i = 0; i < squares; ++i)
+    for (int j = 0; j < squares; ++j) {
+      if (i % 2 == 1 && j % 2 == 1) continue;
+      data.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      data.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      for (const std::array<int, 2>& side : {std::array{at(i, j), at(i + 1, j)},
+                                             {at(i + 1, j), at(i + 1, j + 1)},
+                                             {at(i, j + 1), at(i + 1, j + 1)},
+                                             {at(i, j), at(i, j + 1)}})
+        ++sides[side];
+    }
+  data.boundary = {{"left", {}}, {"rim", {}}};
+  for (const auto& [side, squares_at] : sides)
+    if (squares_at == 1) data.boundary[side[1] <= squares ? 0 : 1].second.push_back(side);
+  return data;
+}
+
+/// Found from outside: refined, of which many edges are on the boundary.
+TEST_P(Memory, OfASieve) {
+  for (Problem problem : {membrane(GetParam(), 1, 1), elastic(GetParam(), 1, 1)}) {
+    problem.mesh = {};
+    problem.mesh.refine = 1;
+    problem.domain = sieve(long_tests() ? 61 : 41);
+    problem.boundary = {{"left", Fixed{}}};
+    const double predicted = for_solve(estimate(problem), {ActiveSet{}, std::nullopt}).memory_bytes;
+    EXPECT_LE(static_cast<double>(solve(problem, {ActiveSet{}, std::nullopt}).summary.peak_memory_bytes),
+              predicted);
   }
 }
 
