@@ -306,12 +306,13 @@ FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, dou
     }
   }
   all.stacks = kValue * (largest[0] + largest[1] + most_shared) + stacks_of_leaf;
-  constexpr double ragged = 0.15, of_others = 2.7;
-  if (repeated && growth > 1 && boundary_edges_ > ragged * triangles_) {
-    // Its refinement is cut elsewhere, and what was alike is so no more: by so much, as measured.
-    all.panels =
-        std::min(of_others * all.panels, factor_bytes(spaces, triangles, contact_unknowns, false).panels);
-  }
+  // With many edges on the boundary a refinement is cut elsewhere, and what was alike is so no more: by so
+  // much, as measured.
+  constexpr double ragged = 0.15, of_alike = 2.7, of_others = 1.2;
+  if (growth > 1 && boundary_edges_ > ragged * triangles_)
+    all.panels = repeated ? std::min(of_alike * all.panels,
+                                     factor_bytes(spaces, triangles, contact_unknowns, false).panels)
+                          : of_others * all.panels;
   return all;
 }
 
