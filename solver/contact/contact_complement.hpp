@@ -11,9 +11,8 @@ namespace signorini {
 struct SingularContact : SolveError {
   SingularContact()
       : SolveError(
-            "nothing but contact holds the body, and only just, so that rounding decides where it is: hold "
-            "it "
-            "(fixed, roller), or bring its moduli, gaps and loads closer together") {}
+            "nothing but contact holds the body, and only just, so that rounding decides where it is: "
+            "hold it (fixed, roller), or bring its moduli, gaps and loads closer together") {}
 };
 
 /// The contact problem alone, everything else eliminated: find λ ≥ 0 with w p = S λ − c ≥ 0, λ p = 0, for

@@ -18,15 +18,17 @@ struct SolveSizes {
   double boundary = 0, parts = 0;      ///< edges of the boundary, and parts that they belong to
 };
 
+/// What becomes of the factor once the fields are found.
+enum class Afterwards { let_go, used_again };
+
 /// What a solve takes, in bytes, at its peaks: while it factors, while it finds its fields, and while it
-/// certifies, with the factor if that is used again, by quantities or a sweep. It takes no more,
-/// and more than half of it, but for some megabytes of tables that not every solve has; thin columns on
-/// contact by the lower order take up to an eighth more. The constants are sizes of what is allocated a
-/// triangle, an unknown or a solve.
+/// certifies, with the factor if that is used again, by quantities or a sweep. It takes no more, and more
+/// than half of it, but for some megabytes of tables that not every solve has; thin columns on contact by the
+/// lower order take up to an eighth more. The constants are sizes of what is allocated a triangle, an unknown
+/// or a solve.
 ///
 /// The factor is that of system/dissection.hpp: of the pieces of the mesh, or of a grid of the divisions. A
 /// polygon whose mesh is still to be made counts as a square grid.
-enum class Afterwards { let_go, used_again };
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is);
 

@@ -61,9 +61,8 @@ std::vector<std::string> look_ahead(const Problem& problem, const std::vector<Va
       brings_large_mesh(problem.domain) ? std::nullopt : make_small_mesh(problem.domain, start);
   if (!small || count(sizes_of(*small)) > few_triangles)
     return {"the mesh is too large to be looked at, of more than " + std::to_string(few_triangles) +
-            " triangles and edges of the boundary: whether formulas have sound values on it, whether means "
-            "are over "
-            "places in the body, and whether it can come to rest, the solve will tell"};
+            " triangles and edges of the boundary: whether formulas have sound values on it, whether "
+            "means are over places in the body, and whether it can come to rest, the solve will tell"};
   const Mesh mesh = stabilized(problem, refine(*small, start.refine));
   if (problem.mesh.adaptive)
     require_room(*problem.mesh.adaptive, static_cast<std::int64_t>(mesh.triangles.size()));

@@ -257,7 +257,7 @@ void apply(const Variation& variation, const Problem& original, Problem& varied)
 
 namespace {
 
-void check_outlines(const Problem& problem, std::vector<Fault>& faults) {
+void check_simple(const Problem& problem, std::vector<Fault>& faults) {
   for (const Quantity& quantity : problem.quantities)
     if (quantity.outline && !is_simple(*quantity.outline))
       faults.push_back(
@@ -268,7 +268,7 @@ void check_outlines(const Problem& problem, std::vector<Fault>& faults) {
 
 std::vector<Fault> validate(const Problem& problem) {
   std::vector<Fault> faults = Validation(problem, kOnCoarseMesh).run();
-  check_outlines(problem, faults);
+  check_simple(problem, faults);
   return faults;
 }
 
@@ -324,8 +324,7 @@ namespace {
 
 void check_outlines(const Problem& problem, const Region& body, std::vector<Fault>& faults) {
   for (const Quantity& quantity : problem.quantities) {
-    if (!quantity.outline) continue;
-    if (!body.contains(*quantity.outline))
+    if (quantity.outline && !body.contains(*quantity.outline))
       faults.push_back(
           {quantity.outline->name, "must lie in the body: the mean is one over the whole polygon"});
   }
