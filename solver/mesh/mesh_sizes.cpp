@@ -69,17 +69,37 @@ struct Pieces {
     const double of_part = halvings(stretch.length, longest);
     count = of_part * stretch.parts;
     length = stretch.length / of_part;
-    reach_across = length * length + stretch.width * stretch.width <= size * size;
-    constexpr double nearly = 0.7, one_layer = 1.5, layers = 3;  // of triangles, at most and at least
+    const double way_across = std::hypot(length, stretch.width);
+    constexpr double well_meeting = 0.78;  // of two sizes, as measured on bands
+    reach_across = way_across <= size;
+    meet_halfway = way_across <= well_meeting * 2 * size;
+    halve_those_across = std::isfinite(stretch.width) && 0.7 * size < length && length < 0.8 * size;
+    constexpr double one_layer = 1.5;  // of triangles
     if (!reach_across && stretch.width <= one_layer * length)
       cuts = 2;  // for the ways across are too long
-    else if (length > nearly * size && stretch.width > layers * length)
-      count *= kCutOnceMore;
+    else
+      count *= cut_for_those_across(length / size, stretch.width / size);
+  }
+
+  /// How often a piece is cut for those across, both in sizes: as measured on bands, mostly pieces that are
+  /// nearly as long as they may be, and where one row of points between the sides would do but for chance, or
+  /// two.
+  static double cut_for_those_across(double length, double width) {
+    const double lengths = width / length;
+    if (length < 0.7) return 1;
+    if (width > 1.6 && 1.74 < lengths && lengths <= 2) return 1.8;
+    if (width > 2.7 && 2.95 < lengths && lengths < 3.3) return 1.6;
+    if (width < 2.3) return 1;
+    return length < 0.9 ? 1.25 : 1.5;
   }
 
   double count, length;
   double cuts = 1;    ///< into so many is each cut whose triangles are counted as if it was not
   bool reach_across;  ///< one triangle does
+  bool meet_halfway;  ///< those of both sides, at one row of points between them
+  /// The diagonal of their square is hardly too long: those of a whole band may be halved, in chains.
+  bool halve_those_across;
+  static constexpr double kMoreOfHalved = 0.2;  // as measured on bands
 };
 
 /// The part of an edge, as shares of it, within a circle; none where the second is no larger.
@@ -209,8 +229,12 @@ class PredictedSizes::OfPolygon {
         across += kTrianglesAcross * pieces.count;
       else
         triangles += pieces.count * (2 * pieces.length >= size ? kTrianglesByEdge : kTrianglesByShortEdge);
-      along_it += stretch.parts * stretch.length * 0.5 *
-                  (pieces.reach_across ? stretch.width : std::min(kHeight * pieces.length, stretch.width));
+      const double along = stretch.parts * stretch.length * 0.5,
+                   height =
+                       pieces.meet_halfway ? stretch.width : std::min(kHeight * pieces.length, stretch.width);
+      along_it += along * height;
+      if (pieces.halve_those_across)
+        triangles += Pieces::kMoreOfHalved * by_area(along * (stretch.width - height), size);
     }
     for (const Tip& tip : tips_)
       for (const int edge : tip.edges) {

@@ -151,6 +151,26 @@ Polygon plate_with(const std::vector<std::pair<Point, double>>& discs) {
   return plate;
 }
 
+/// Where one row of points between the sides of a band would do, or two, but for chance, most pieces of the
+/// sides are cut once more: in contact they are what takes the memory.
+TEST(NarrowPlaces, BetweenTheSidesOfABandAreCutForThoseAcross) {
+  const double length = 1000, piece = length / 128;  // for the mesher halves
+  for (const double share : {0.72, 0.8, 0.9, 0.95, 0.99})
+    for (double width = 1; width < 7; width *= 1.04) {
+      SCOPED_TRACE(std::to_string(width) + " sizes wide, pieces of " + std::to_string(share));
+      const double size = piece / share, height = width * size;
+      Polygon band{{{0, 0}, {length, 0}, {length, height}, {0, height}}, {}, {}};
+      band.sides = {"bottom", "right", "top", "left"};
+      const Domain domain = band;
+      const MeshRequest request(LargestEdge{size});
+      const MeshSizes foreseen = PredictedSizes(domain)(request),
+                      made = sizes_of(make_domain_mesh(domain, request));
+      EXPECT_GE(1.07 * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
+      EXPECT_GE(1.07 * static_cast<double>(foreseen.edges_of_parts()),
+                static_cast<double>(made.edges_of_parts()));
+    }
+}
+
 /// The chords that a polygon starts with leave much more room between arcs than these.
 TEST(NarrowPlaces, BetweenArcsAreForeseen) {
   for (const double gap : {1e-1, 1e-2, 1e-4, 1e-6, 1e-7}) {
