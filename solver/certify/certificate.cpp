@@ -32,7 +32,7 @@ LoadsBroughtBack add_patches(const Discretization& discrete, const Solution& sol
   const bool is_admissible = discrete.spaces().order == 0 || pair.pressure.stream_function_at_points.empty();
   if (is_admissible || discrete.problem.mesh.adaptive) return back;
   SilentObserver silent(progress.observer());
-  Progress within(silent, progress.time_left());
+  Progress within(silent, progress);
   for (Patch& patch : patches_where_pressure_changes(discrete, pair.pressure)) {
     try {
       const PatchPairs pairs(discrete, solution.stress, pair, std::move(patch), within);
@@ -46,6 +46,8 @@ LoadsBroughtBack add_patches(const Discretization& discrete, const Solution& sol
       for (const int t : parents) owners[t] = -1;
       back.square += own.square;
       for (int t = 0; t < discrete.triangles(); ++t) back.forces[t] += own.forces[t];
+    } catch (const TimeUp&) {
+      throw;
     } catch (const std::runtime_error&) {
       continue;
     }

@@ -46,8 +46,8 @@ double Progress::time_left_to_iterate() const {
 std::optional<double> Progress::time_left() const {
   if (!time_limit_) return std::nullopt;
   const double to_iterate = time_left_to_iterate();
-  if (phase_ == Phase::certify) return to_iterate + kForAnswer;
-  return found_ ? std::max(to_iterate, *found_ + kForAnswer - seconds()) : to_iterate;
+  if (phase_ == Phase::certify) return to_iterate + for_answer_;
+  return found_ ? std::max(to_iterate, *found_ + for_answer_ - seconds()) : to_iterate;
 }
 
 bool Progress::record(Iteration iteration) {

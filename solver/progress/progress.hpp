@@ -18,6 +18,11 @@ class Progress {
   Progress(Observer& observer, std::optional<double> time_limit, double spent = 0)
       : observer_(observer), time_limit_(time_limit), spent_before_(spent) {}
 
+  /// Of a part of a solve, which has a record of its own: its time ends with that of the whole.
+  Progress(Observer& observer, const Progress& whole) : Progress(observer, whole.time_left()) {
+    for_answer_ = 0;
+  }
+
   Observer& observer() { return observer_; }
 
   /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up.
@@ -25,10 +30,6 @@ class Progress {
 
   /// There is an iterate to be completed, for which there is a little time beyond the limit.
   void found();
-
-  /// Seconds of the time limit that are left, if there is one: what a part of the solve may take that has a
-  /// record of its own.
-  std::optional<double> time_left() const;
 
   /// Throws like enter().
   void check();
@@ -58,6 +59,9 @@ class Progress {
   double seconds_in(Phase phase) const;
 
  private:
+  /// Seconds that are left, if there is a time limit: with those for the answer.
+  std::optional<double> time_left() const;
+
   /// To complete an iterate and to certify may go on a little beyond the limit: hardly any time is needed for
   /// the fields and the bound of a small problem whose iteration the limit ended.
   static constexpr double kForAnswer = 0.15;
@@ -67,6 +71,7 @@ class Progress {
 
   Observer& observer_;
   std::optional<double> time_limit_;
+  double for_answer_ = kForAnswer;
   double spent_before_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   Phase phase_ = Phase::mesh;

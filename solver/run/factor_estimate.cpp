@@ -55,7 +55,7 @@ double different_pieces(int level, int kinds) {
 
 /// Of each level of pieces the unknowns on the cut and on the sides, as all pieces of a level are alike.
 FactorBytes of_squares(Direction x, Direction y, bool is_regular, int kinds, const Spaces& spaces,
-                       double all_triangles, double contact) {
+                       double all_triangles, double contact, double upright) {
   constexpr double least_in_leaf = 8;
   const double per_edge = spaces.traces_per_edge(), per_point = spaces.rotations() ? 1 : 0;
   const int levels = static_cast<int>(std::log2(std::max(1., all_triangles / least_in_leaf)));
@@ -79,10 +79,12 @@ FactorBytes of_squares(Direction x, Direction y, bool is_regular, int kinds, con
     const double kept = different_pieces(level, kinds);
     all.panels += kValue * kept * pivots * (pivots + rest);
     all.fronts += kUnknown * pieces * (pivots + rest);
-    // The largest piece of the level, which has all its sides inside, and perhaps all of a contact.
+    // The largest piece of the level, which has all its sides inside, and perhaps all of the contact that
+    // this level's cuts do not cut.
     const double most =
         ragged_x * x.most_inner_sides() * y.squares + ragged_y * y.most_inner_sides() * x.squares;
-    const double largest = most * (per_edge + per_point) + contact / x.pieces;
+    const double largest =
+        most * (per_edge + per_point) + contact * ((1 - upright) / x.pieces + upright / y.pieces);
     all.stacks += kValue * (level > 0 ? 2 : 1) * numbers_of_lower_triangle(largest);
     longer.halve(is_regular);
   }
@@ -132,7 +134,7 @@ std::array<int, 2> ascending(const std::array<int, 2>& edge) {
 
 FactorBytes factor_bytes(const Grid& grid, const Spaces& spaces, double triangles, double contact_unknowns) {
   return of_squares({grid.x, grid.width, false}, {grid.y, grid.height, false}, grid.is_regular, grid.kinds,
-                    spaces, triangles, contact_unknowns);
+                    spaces, triangles, contact_unknowns, grid.upright);
 }
 
 MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<int, 3>> triangles,
@@ -252,7 +254,7 @@ FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double t
                                double contact) const {
   const double x = std::sqrt(triangles / 2 * leaf.across), y = triangles / 2 / x;
   FactorBytes made = of_squares({x, leaf.extent.x() / x, true}, {y, leaf.extent.y() / y, true}, false, 0,
-                                spaces, triangles, contact);
+                                spaces, triangles, contact, 0);
   const double full = fullness(leaf, spaces, triangles);
   made.panels *= full * full, made.stacks *= full * full, made.fronts *= full;
   return made;

@@ -22,6 +22,7 @@ struct Grid {
   double x, y;
   double width, height;  ///< of a square
   bool is_regular;       ///< that cuts may go between squares
+  double upright;        ///< the part of the contact unknowns on the sides along y
   int kinds;             ///< of squares, two where diagonals alternate: pieces that are alike are kept once
                          ///< (system/repeated_pieces.hpp); 0 where none are, as their materials differ
 };

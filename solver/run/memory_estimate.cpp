@@ -31,12 +31,23 @@ bool has_few_values(const VectorField& field) {
   });
 }
 
+/// The part of a rectangle's contact edges that its sides along y have.
+double upright_contact(const Problem& problem, int x, int y) {
+  const auto edges = [&](const char* side, int divisions) {
+    const auto found = problem.boundary.find(side);
+    const bool touches = found != problem.boundary.end() && std::holds_alternative<Contact>(found->second);
+    return touches ? divisions : 0;
+  };
+  const double upright = edges("left", y) + edges("right", y), level = edges("bottom", x) + edges("top", x);
+  return upright > 0 ? upright / (upright + level) : 0;
+}
+
 /// Where a mesh refines itself is not known. It does so in a few places, which are cheaper to cut than a grid
 /// that is as fine everywhere.
 Grid grid_of(const Problem& problem, double triangles, bool repeated) {
   if (!std::holds_alternative<Rectangle>(problem.domain)) {
     const double n = std::sqrt(triangles / 2);
-    return {n, n, 1, 1, false, 0};
+    return {n, n, 1, 1, false, 0, 0};
   }
   const auto& rectangle = std::get<Rectangle>(problem.domain);
   const auto [x, y] = divisions(rectangle, problem.mesh);
@@ -49,6 +60,7 @@ Grid grid_of(const Problem& problem, double triangles, bool repeated) {
           rectangle.size.x() / (finer * x),
           rectangle.size.y() / (finer * y),
           true,
+          upright_contact(problem, x, y),
           repeated && is_constant(problem.material) && !problem.mesh.adaptive ? kinds : 0};
 }
 

@@ -63,7 +63,10 @@ Pull pull_of(const Quantity& quantity, const Discretization& discrete, Factoriza
     const Solution solution = condensed.solve(exactly, progress);
     if (const auto& bound = solution.summary.error_bound)
       return {std::sqrt(2 * std::max(0., -bound->energy_lower)), bound->unmet};
+    progress.check();  // whether it had no time
     return {anything, {"nothing bounds the energy of the body that the weight pulls"}};
+  } catch (const TimeUp&) {
+    throw;
   } catch (const SolveError& failure) {
     return {anything, {failure.what()}};
   } catch (const NotPositiveDefinite&) {

@@ -33,7 +33,7 @@ Solution iterate(const Problem& problem, std::shared_ptr<const Mesh> mesh, const
 Certificate certify_iterate(const Problem& problem, const std::shared_ptr<const Mesh>& mesh,
                             const Solution& iterate, Factorization by, Progress& progress) {
   SilentObserver silent(progress.observer());
-  Progress within(silent, progress.time_left());
+  Progress within(silent, progress);
   CondensedProblem condensed(problem, mesh, by, within);
   Fields fields = condensed.find(ActiveSet{}, within);
   const Settings exactly{ActiveSet{}, std::nullopt};

@@ -187,6 +187,8 @@ class Encloser {
     } catch (const InvalidProblem& unsound) {
       const Fault& fault = unsound.faults().front();
       add({kUnbounded + fault.where + " " + fault.detail}, own.unmet);
+    } catch (const TimeUp&) {
+      throw;  // for those that follow, too
     } catch (const SolveError& failure) {
       add({failure.what()}, own.unmet);
     }
@@ -254,7 +256,7 @@ void enclose_quantities(const CondensedProblem& condensed, const Fields& fields,
   const std::vector<Quantity>& quantities = condensed.discretization().problem.quantities;
   if (quantities.empty() || !certificate.has_bound()) return;
   SilentObserver silent(progress.observer());
-  Progress within(silent, progress.time_left());
+  Progress within(silent, progress);
   Encloser enclose(condensed, fields, solution, by, certificate, kept, within);
   for (std::size_t i = 0; i < quantities.size(); ++i) certificate.quantities.push_back(enclose(i));
 }

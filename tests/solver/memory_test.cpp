@@ -278,6 +278,14 @@ TEST_P(Memory, OfAThinColumn) {
   expect_bound(column);
 }
 
+/// Found from outside: each half of it has half of its contact, too, which a formula foresees.
+TEST_P(Memory, OfAThinColumnOfARectangle) {
+  Problem column = elastic(GetParam(), 1, long_tests() ? 4000 : 2500);
+  column.boundary = {{"left", Fixed{}}, {"right", Contact{Field(0.001)}}};
+  column.body = VectorField(Field(0.1), Field(0));
+  expect_bound(column);
+}
+
 /// Bodies that meet in one point: whatever cuts them in two cuts through many.
 TEST_P(Memory, OfAStar) {
   MeshData star;

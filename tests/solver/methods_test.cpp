@@ -274,6 +274,19 @@ TEST(Limits, TimeLimitHoldsWhileAnIterateIsCompleted) {
   }
 }
 
+/// Found from outside: quantities that ran out of time took what is allowed for the answer twice.
+TEST(Limits, APartOfASolveHasNoTimeOfItsOwn) {
+  using namespace std::chrono_literals;
+  Observer indifferent;
+  Progress whole(indifferent, 0.1);
+  whole.enter(Phase::certify);
+  Progress part(indifferent, whole);
+  part.enter(Phase::certify);
+  std::this_thread::sleep_for(260ms);  // 0.1 s and what is allowed for the answer
+  EXPECT_THROW(part.check(), TimeUp);
+  EXPECT_THROW(whole.check(), TimeUp);
+}
+
 /// Lets the time run out between the iterate and its bound.
 class PausesBeforeTheBound : public Observer {
  public:
