@@ -54,7 +54,10 @@ MeshSizes sizes_of(const MeshData& data) {
 
 /// The pieces into which a length is halved until none is longer.
 double halvings(double length, double longest) {
-  return length <= longest ? 1 : std::exp2(std::ceil(std::log2(length / longest)));
+  if (length <= longest) return 1;
+  int exponent;
+  const double half = std::frexp(length / longest, &exponent);
+  return std::ldexp(1, half > 0.5 ? exponent : exponent - 1);
 }
 
 /// The cotangent of the sharpest angle of a triangle, 20.7 degrees.
@@ -69,10 +72,10 @@ struct Pieces {
     const double of_part = halvings(stretch.length, longest);
     count = of_part * stretch.parts;
     length = stretch.length / of_part;
-    const double way_across = std::hypot(length, stretch.width);
-    constexpr double well_meeting = 0.78;  // of two sizes, as measured on bands
-    reach_across = way_across <= size;
-    meet_halfway = way_across <= well_meeting * 2 * size;
+    const double way_across_squared = length * length + stretch.width * stretch.width;
+    constexpr double well_meeting = 0.78 * 2;  // sizes, as measured on bands
+    reach_across = way_across_squared <= size * size;
+    meet_halfway = way_across_squared <= well_meeting * well_meeting * size * size;
     halve_those_across = std::isfinite(stretch.width) && 0.7 * size < length && length < 0.8 * size;
     constexpr double one_layer = 1.5;  // of triangles
     if (!reach_across && stretch.width <= one_layer * length)

@@ -102,7 +102,7 @@ class Estimation {
   const PredictedSizes* const predicted_;
   std::vector<const Condition*> conditions_;      ///< of the parts
   std::vector<int> chains_;                       ///< of the parts, at most: nodes more than edges
-  int may_be_tried_ = 24;                         ///< coarser meshes
+  int may_be_tried_ = 12;                         ///< coarser meshes
   std::int64_t may_be_made_ = most_of_own_shape;  ///< together, of meshes that are made to be counted
   std::int64_t may_be_cut_ = 2 * most_cut;        ///< of those, and of their refinements
   std::optional<MeshPieces> pieces_;              ///< of a mesh that is made, or given
