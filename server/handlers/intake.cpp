@@ -83,9 +83,11 @@ void require_little_memory(const Intake& intake, const Limits& limits, const Ide
       share < limits.max_memory
           ? gigabytes(share) + " to the solves of `" + identity.name + "` (memory= in the token file)"
           : "a solve up to " + gigabytes(limits.max_memory) + " (--max-memory)";
-  throw too_large("too-much-memory", "The problem", "/mesh",
-                  "It would take about " + gigabytes(bytes) + " of memory; this service gives " + given +
-                      ". Take a coarser mesh or the nonconforming scheme.");
+  throw too_large(
+      "too-much-memory", "The problem", "/mesh",
+      "It would take about " + gigabytes(bytes) + " of memory; this service gives " + given +
+          ". Take a coarser mesh" +
+          (intake.request.problem.scheme == Scheme::conforming ? " or the nonconforming scheme." : "."));
 }
 
 /// What a sweep holds are the contact unknowns of its entries; and each material is as much work as a

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "system/element_sum.hpp"
 #include "system/short_cut.hpp"
@@ -12,29 +13,78 @@ namespace {
 /// Elements of a leaf, at least: fewer make the factor sparser, more make its blocks denser.
 constexpr int kLeaf = 8;
 
+/// Coordinates that differ by less of a piece's extent differ by rounding.
+constexpr double kRounding = 1e-9;
+
+/// Whether the second half of a piece is the first, moved: element by element.
+bool is_moved(std::span<const Centre> first, std::span<const Centre> second) {
+  if (first.size() != second.size()) return false;
+  const auto way = [&](std::size_t i, int along) { return second[i].at[along] - first[i].at[along]; };
+  const double x = way(0, 0), y = way(0, 1), rounding = kRounding * (std::abs(x) + std::abs(y));
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (std::abs(way(i, 0) - x) > rounding || std::abs(way(i, 1) - y) > rounding) return false;
+  return true;
+}
+
+/// Sorts the elements leaf by leaf.
+class Halving {
+ public:
+  Halving(const ElementSum& sum, int leaves, Progress& progress)
+      : progress_(progress), halves_(sum, leaves), place_(sum.matrix_of.size()) {}
+
+  void operator()(std::span<Centre> elements, int leaves) {
+    if (leaves == 1) {
+      // By where they lie, so that leaves are alike that have the same elements, whatever their numbers.
+      std::ranges::sort(elements, {}, [](const Centre& centre) { return centre.at[1]; });
+      of_leaf_.push_back(elements.size());
+      return;
+    }
+    progress_.check();
+    const std::size_t first_half = halves_(elements, leaves);
+    const std::span<Centre> first = elements.first(first_half), second = elements.subspan(first_half);
+    if (first_half >= kWorthALook && is_moved(first, second)) return halve_alike(first, second, leaves / 2);
+    (*this)(first, leaves / 2);
+    (*this)(second, leaves / 2);
+  }
+
+  /// The numbers of elements of each leaf.
+  const std::vector<std::size_t>& of_leaf() const { return of_leaf_; }
+
+ private:
+  /// Elements of a half.
+  static constexpr std::size_t kWorthALook = 2 * kLeaf;
+
+  /// The second half becomes what the first one does.
+  void halve_alike(std::span<Centre> first, std::span<Centre> second, int leaves) {
+    std::vector<int> before;
+    for (const Centre& centre : first) before.push_back(centre.element);
+    const std::vector<Centre> moved(second.begin(), second.end());
+    const std::size_t first_leaf = of_leaf_.size();
+    (*this)(first, leaves);
+    for (std::size_t i = 0; i < before.size(); ++i) place_[before[i]] = static_cast<int>(i);
+    for (std::size_t i = 0; i < second.size(); ++i) second[i] = moved[place_[first[i].element]];
+    const std::size_t behind = of_leaf_.size();
+    for (std::size_t leaf = first_leaf; leaf < behind; ++leaf) of_leaf_.push_back(of_leaf_[leaf]);
+  }
+
+  Progress& progress_;
+  ShortCut halves_;
+  std::vector<int> place_;  ///< of an element in a half, before that was sorted
+  std::vector<std::size_t> of_leaf_;
+};
+
 }  // namespace
 
 ElementTree::ElementTree(const ElementSum& sum, Progress& progress)
     : leaves_(static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, sum.elements() / kLeaf))))) {
-  elements_.reserve(sum.matrix_of.size());
-  first_element_.reserve(static_cast<std::size_t>(leaves_) + 1);
   std::vector<Centre> centres = centres_of(sum);
-  ShortCut halves(sum, leaves_);
-  const auto halve = [&](const auto& self, std::span<Centre> elements, int leaves) -> void {
-    if (leaves == 1) {
-      first_element_.push_back(elements_.size());
-      // By where they lie, so that leaves are alike that have the same elements, whatever their numbers.
-      std::ranges::sort(elements, {}, [](const Centre& centre) { return centre.at[1]; });
-      for (const Centre& centre : elements) elements_.push_back(centre.element);
-      return;
-    }
-    progress.check();
-    const std::size_t first_half = halves(elements, leaves);
-    self(self, elements.first(first_half), leaves / 2);
-    self(self, elements.subspan(first_half), leaves / 2);
-  };
-  halve(halve, centres, leaves_);
-  first_element_.push_back(elements_.size());
+  Halving halve(sum, leaves_, progress);
+  halve(centres, leaves_);
+  elements_.reserve(centres.size());
+  for (const Centre& centre : centres) elements_.push_back(centre.element);
+  first_element_.reserve(static_cast<std::size_t>(leaves_) + 1);
+  first_element_.push_back(0);
+  for (const std::size_t count : halve.of_leaf()) first_element_.push_back(first_element_.back() + count);
 }
 
 }  // namespace signorini

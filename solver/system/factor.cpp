@@ -99,6 +99,8 @@ void Factor::forward(Eigen::VectorXd& x, Workspace& workspace, Progress& progres
     const int m = panel.size, p = panel.pivots;
     pace.add(static_cast<std::size_t>(m) * p);
     for (int k = 0; k < p; ++k) local[k] = x[unknowns[k]];
+    // A support that moves pulls at few unknowns: most pieces have nothing to pass on.
+    if (std::none_of(local, local + p, [](double pull) { return pull != 0; })) continue;
     eliminate(panel, panels_.columns(panel), local);
     for (int k = 0; k < p; ++k) x[unknowns[k]] = local[k];
     for (int k = p; k < m; ++k) x[unknowns[k]] += local[k];

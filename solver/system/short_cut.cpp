@@ -108,24 +108,30 @@ std::size_t ShortCut::divide_between_columns(std::span<Centre> piece, int along,
     return median;
   }
   const double extent = box.sizes()[along];
-  sort_between(piece, median - reach, median + reach, along, {box.min()[along], extent});
+  const std::size_t first = median - reach;
+  find_between(piece, first, median + reach, along, {box.min()[along], extent});
+  const auto gap_before = [&](std::size_t cut) { return between_[cut - first] - between_[cut - 1 - first]; };
   std::size_t best = median;
   for (std::size_t away = 1; away < reach; ++away)
     for (const std::size_t cut : {median - away, median + away})
-      if (gap_before(piece, cut, along) > gap_before(piece, best, along) + kWider * extent) best = cut;
+      if (gap_before(cut) > gap_before(best) + kWider * extent) best = cut;
+  if (gap_before(best) > 0)
+    divide_before(piece, between_[best - first], along);
+  else
+    divide(piece, best, along);
   return best;
 }
 
-/// Sorts the elements from the first to the last of those places, between those that belong before and behind
-/// them. Many are put into bins first: a few streams through memory, without a guess at each comparison.
-void ShortCut::sort_between(std::span<Centre> piece, std::size_t first, std::size_t last, int along,
+/// The coordinates of the elements from the first to the last of those places, in ascending order. Of many
+/// they are looked for in bins: a few streams through memory, without a guess at each comparison.
+void ShortCut::find_between(std::span<const Centre> piece, std::size_t first, std::size_t last, int along,
                             const Range& range) {
   constexpr std::size_t few = 512, bins = 1024;
   const double per_length = bins / range.extent;
-  std::size_t begin = first, end = last + 1;
+  between_.clear();
+  std::size_t below = 0;
   if (piece.size() < few || !std::isfinite(per_length)) {
-    divide(piece, first, along);
-    divide(piece.subspan(first), last - first, along);
+    for (const Centre& centre : piece) between_.push_back(centre.at[along]);
   } else {
     const auto bin = [&](const Centre& centre) {
       return std::min(bins - 1, static_cast<std::size_t>((centre.at[along] - range.low) * per_length));
@@ -137,17 +143,28 @@ void ShortCut::sort_between(std::span<Centre> piece, std::size_t first, std::siz
       return static_cast<std::size_t>(std::ranges::upper_bound(ends, place) - ends.begin()) - 1;
     };
     const std::size_t low = of_place(first), high = of_place(last);
-    begin = ends[low];
-    end = ends[high + 1];
-    binned_.resize(std::max(binned_.size(), piece.size()));
-    std::array<Centre*, 3> next{&binned_[0], &binned_[begin], &binned_[end - 1] + 1};
-    for (const Centre& centre : piece) {
-      const std::size_t own = bin(centre);
-      *next[(own >= low) + (own > high)]++ = centre;
-    }
-    std::copy_n(binned_.begin(), piece.size(), piece.begin());
+    below = ends[low];
+    for (const Centre& centre : piece)
+      if (const std::size_t own = bin(centre); low <= own && own <= high)
+        between_.push_back(centre.at[along]);
   }
-  std::sort(at(piece, begin), at(piece, end), before(along));
+  const auto place = [&](std::size_t i) { return between_.begin() + static_cast<std::ptrdiff_t>(i - below); };
+  std::nth_element(between_.begin(), place(first), between_.end());
+  std::nth_element(place(first), place(last), between_.end());
+  std::sort(place(first), place(last));
+  between_.erase(between_.begin(), place(first));
+}
+
+/// Both halves in the order that they had, so that those that are alike stay alike.
+void ShortCut::divide_before(std::span<Centre> piece, double coordinate, int along) {
+  second_half_.clear();
+  auto next = piece.begin();
+  for (const Centre& centre : piece)
+    if (centre.at[along] < coordinate)
+      *next++ = centre;
+    else
+      second_half_.push_back(centre);
+  std::ranges::copy(second_half_, next);
 }
 
 /// How many unknowns the halves share.

@@ -52,8 +52,9 @@ class ShortCut {
   };
 
   std::size_t divide_between_columns(std::span<Centre> piece, int along, const Eigen::AlignedBox2d& box);
-  void sort_between(std::span<Centre> piece, std::size_t first, std::size_t last, int along,
+  void find_between(std::span<const Centre> piece, std::size_t first, std::size_t last, int along,
                     const Range& range);
+  void divide_before(std::span<Centre> piece, double coordinate, int along);
   int shared(std::span<const Centre> piece, std::size_t first_half);
   Cut shortest(std::span<Centre> piece, std::size_t least_half, int along);
 
@@ -63,7 +64,8 @@ class ShortCut {
   int seen_ = 0;
   std::vector<int> seen_as_;       ///< of each unknown: what it was last seen as,
   std::vector<int> first_, last_;  ///< and the places of its elements in the piece that was last looked at
-  std::vector<Centre> binned_;     ///< what a piece is sorted in
+  std::vector<double> between_;    ///< the coordinates near the median of that piece
+  std::vector<Centre> second_half_;
 };
 
 }  // namespace signorini

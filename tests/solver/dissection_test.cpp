@@ -7,6 +7,7 @@
 
 #include "progress/observer.hpp"
 #include "system/dissection.hpp"
+#include "system/element_tree.hpp"
 
 namespace signorini::dissection_test {
 namespace {
@@ -83,6 +84,21 @@ TEST(Dissection, CutsAcrossArmsAndNotAlongThem) {
   EXPECT_EQ(cost_of(squares(68, 66, nine_teeth)).first_cut, 2);
   const auto angle = [](int i, int j) { return i < 10 || j < 10; };
   for (const int rows : {3, 9}) EXPECT_EQ(cost_of(squares(100, 100, angle, 1, rows)).first_cut, 10);
+}
+
+/// What is like it is cut as its neighbour was, of which one is looked at.
+TEST(ElementTree, CutsHalvesThatAreAlikeInTheSameWay) {
+  Observer indifferent;
+  Progress progress(indifferent, {});
+  const ElementSum sum = squares(64, 32, everywhere);
+  const ElementTree tree(sum, progress);
+  for (int leaf = 0; leaf < tree.leaves() / 2; ++leaf) {
+    const auto first = tree.elements(tree.leaves() + leaf),
+               second = tree.elements(tree.leaves() + tree.leaves() / 2 + leaf);
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t i = 0; i < first.size(); ++i)
+      EXPECT_NEAR((sum.centres[second[i]] - sum.centres[first[i]] - Point(32, 0)).norm(), 0, 1e-12);
+  }
 }
 
 /// The order depends on which squares touch, not on how long they are.
