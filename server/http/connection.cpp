@@ -128,7 +128,7 @@ bool Connection::wait_writable() {
 }
 
 void Connection::put(std::string reply) {
-  reply_ = std::move(reply);
+  reply_.swap(reply);  // moved into, a string keeps the memory of what it held where the new one is short
   delivered_ = 0;
 }
 

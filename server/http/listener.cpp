@@ -277,6 +277,7 @@ class Listener::Impl {
   /// A long body has its room until it was read by the handler, or will not be.
   void serve(const ThreadPool& pool, const std::shared_ptr<Connection>& connection,
              std::shared_ptr<void> body_room, std::chrono::steady_clock::time_point came) {
+    if (carries(pool) && connection->has_left()) return move_on(connection, false);
     const auto exchange = std::make_shared<Exchange>();
     exchange->connection = connection;
     exchange->message = connection->reader().next();
@@ -340,8 +341,12 @@ class Listener::Impl {
     hatch_.deliver(exchange->connection, reply_text(message, response), goes_on(message, response));
   }
 
-  /// A reply that is written while it is sent.
+  /// Whether its replies are long.
+  bool carries(const ThreadPool& pool) const { return &pool == &carriers_ || &pool == &list_carriers_; }
+
+  /// A reply that is written while it is sent, if anybody is there for it.
   void carry(const Exchange& exchange, const Response& response) {
+    if (exchange.connection->has_left()) return move_on(exchange.connection, false);
     const bool sent =
         send_written_reply(*exchange.connection, exchange.message, response, exchange.request.id);
     move_on(exchange.connection, sent && goes_on(exchange.message, response));

@@ -147,6 +147,40 @@ TEST_F(Guests, WhoAskAgainAndAgainAndReadNothing) {
   EXPECT_EQ(read_replies(reader[0].heard(), false).size(), 150u);
 }
 
+/// Found from outside: each kept a copy of its last reply.
+TEST_F(Guests, WhoHaveReadAllAndStay) {
+  const auto memory = [&] { return figures_of(daemon_.process().id()).memory; };
+  constexpr std::size_t count = 500, a_guest = 16 * 1024;
+  const std::string asked = "GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  expect_reply("/openapi.json", 1s);
+  const std::size_t before = memory();
+  std::vector<RawClient> guests = crowd(count, asked);
+  EXPECT_TRUE(listen_until(guests, 20s * patience, [&] {
+    return std::ranges::all_of(guests, [](const RawClient& guest) { return guest.heard().size() > 100'000; });
+  }));
+  if (!sanitized) {
+    EXPECT_LT(memory(), before + count * a_guest + 8 * megabyte);
+  }
+}
+
+/// Found from outside: their pictures were drawn one after the other, for 20 s.
+TEST_F(Guests, WhoAskForPicturesAndLeave) {
+  httplib::Client client("127.0.0.1", port());
+  json problem = example("paper-nonconforming");
+  problem["mesh"]["divisions"] = {64, 64};
+  const auto solved = client.Post("/v1/solves?wait=60&fields=summary", problem.dump(), "application/json");
+  ASSERT_TRUE(solved);
+  const std::string path = "/v1/solves/" + std::string(json::parse(solved->body).at("id")) + "/picture.svg";
+  ASSERT_GT(client.Get(path)->body.size(), 100'000);
+  const int before = figures_of(daemon_.process().id()).descriptors;
+  crowd(500, "GET " + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n").clear();
+  const auto until = Clock::now() + 1s * patience;
+  while (figures_of(daemon_.process().id()).descriptors > before + 20 && Clock::now() < until)
+    std::this_thread::sleep_for(10ms);
+  EXPECT_LE(figures_of(daemon_.process().id()).descriptors, before + 20);
+  expect_service();
+}
+
 /// Each has left, whatever it had said before, and keeps nothing though it stays.
 TEST_F(Guests, WhoCloseTheirSideAndStay) {
   const std::vector<std::string> said{"",
