@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "certify/admissible_pair.hpp"
 #include "certify/pair_sums.hpp"
@@ -24,6 +25,7 @@ struct Certificate {
   std::unique_ptr<AdmissiblePair> pair;
   std::optional<PairSums> sums;              ///< of that pair
   std::vector<EnclosedQuantity> quantities;  ///< that the problem asks for, if there is a bound
+  std::string late;                          ///< what the time limit left out, in words
 
   bool has_bound() const { return is_in_range(bound); }
 };

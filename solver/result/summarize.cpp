@@ -252,19 +252,27 @@ Solution describe(const Discretization& discrete, std::shared_ptr<const Mesh> me
 
 namespace {
 
+/// A solution that converged has not all that was asked for.
+void end_late(Summary& summary, const std::string& why) {
+  if (summary.outcome != Outcome::converged) return;
+  summary.outcome = Outcome::time_limit;
+  summary.advice = why;
+}
+
 void add(const Problem& problem, Certificate certificate, Solution& solution) {
+  Summary& summary = solution.summary;
   if (certificate.has_bound()) {
-    std::ranges::copy(warnings(problem, solution, certificate.bound),
-                      std::back_inserter(solution.summary.notes));
-    solution.summary.error_bound = std::move(certificate.bound);
-    solution.summary.quantities = std::move(certificate.quantities);
+    std::ranges::copy(warnings(problem, solution, certificate.bound), std::back_inserter(summary.notes));
+    summary.error_bound = std::move(certificate.bound);
+    summary.quantities = std::move(certificate.quantities);
     solution.error_squares = std::move(certificate.squares);
     solution.admissible_pressure = std::move(certificate.pressure);
+    if (!certificate.late.empty()) end_late(summary, certificate.late);
   } else {
     std::string why;
     for (const std::string& reason : certificate.bound.unmet) why += (why.empty() ? "" : "; ") + reason;
     if (why.empty()) why = "its numbers leave the range of double precision";
-    solution.summary.notes.push_back("there is no error bound: " + why);
+    summary.notes.push_back("there is no error bound: " + why);
   }
 }
 
@@ -280,10 +288,7 @@ void add_bound(const Problem& problem, const std::function<Certificate()>& certi
         "the time limit was reached before the error bound was known: raise solver.time_limit or coarsen the "
         "mesh";
     solution.summary.notes.push_back("there is no error bound: " + why);
-    if (solution.summary.outcome == Outcome::converged) {
-      solution.summary.outcome = Outcome::time_limit;
-      solution.summary.advice = why;
-    }
+    end_late(solution.summary, why);
   }
   solution.summary.timings = timings(progress);
 }

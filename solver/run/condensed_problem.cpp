@@ -141,7 +141,17 @@ Certificate CondensedProblem::certified(const Fields& fields, const Solution& so
   KeptDuals own(KeptDuals::For::one_solve);
   KeptDuals& all = kept ? *kept : own;
   Certificate certificate = certify(*discretization_, solution, fields.coupling, all.norms(*this), progress);
-  enclose_quantities(*this, fields, solution, by, certificate, all, progress);
+  try {
+    enclose_quantities(*this, fields, solution, by, certificate, all, progress);
+  } catch (const TimeUp&) {
+    // A mesh that refines itself for one of them keeps the level before.
+    if (discretization_->problem.mesh.adaptive) throw;
+    certificate.quantities.clear();
+    certificate.late =
+        "the time limit was reached before the quantities were enclosed: raise solver.time_limit, coarsen "
+        "the "
+        "mesh or ask for fewer";
+  }
   return certificate;
 }
 

@@ -1,6 +1,7 @@
 // The three iterations against each other, against units, and at their limits.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <thread>
 
 #include "contact/active_set.hpp"
@@ -389,6 +390,42 @@ TEST(Methods, ShowNoRowThatIsNotFinite) {
           // It may say so instead.
         }
       }
+}
+
+/// Counts how often it is asked, and takes a moment each time after so many.
+class SlowAfter : public Observer {
+ public:
+  explicit SlowAfter(int asked) : at_once_(asked) {}
+
+  bool keep_going() override {
+    if (++asked_ > at_once_) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return true;
+  }
+  int asked() const { return asked_; }
+
+ private:
+  const int at_once_;
+  int asked_ = 0;
+};
+
+TEST(Limits, QuantitiesThatAreLateLeaveTheBound) {
+  Problem problem = problems::paper(Scheme::conforming, 8);
+  problem.quantities.clear();
+  SlowAfter without(std::numeric_limits<int>::max());
+  const Solution bounded = solve(problem, {ActiveSet{}, {}}, without);
+  for (int i = 0; i < 50; ++i) {
+    Quantity& quantity = problem.quantities.emplace_back();
+    quantity.name = "force " + std::to_string(i);
+    quantity.weights.emplace("bottom", Field(1 + i));
+  }
+  SlowAfter slow(without.asked());
+  const Solution late = solve(problem, {ActiveSet{}, 2.}, slow);
+  EXPECT_EQ(late.summary.outcome, Outcome::time_limit);
+  EXPECT_NE(late.summary.advice.find("quantities"), std::string::npos) << late.summary.advice;
+  EXPECT_TRUE(late.summary.quantities.empty());
+  ASSERT_TRUE(late.summary.error_bound);
+  EXPECT_NEAR(late.summary.error_bound->value, bounded.summary.error_bound->value,
+              1e-9 * bounded.summary.error_bound->value);
 }
 
 }  // namespace
