@@ -11,6 +11,7 @@
 #include "../problems/sanitized.hpp"
 #include "api/document/gzip.hpp"
 #include "child_process.hpp"
+#include "example_problems.hpp"
 #include "process_figures.hpp"
 #include "raw_client.hpp"
 #include "reply_reader.hpp"
