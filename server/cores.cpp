@@ -9,6 +9,8 @@
 
 #include <cblas.h>
 
+#include "system/large_products.hpp"
+
 namespace signorini::server {
 
 void use_vector_instructions(char** argv) {
@@ -25,7 +27,7 @@ void use_vector_instructions(char** argv) {
 
 void share_cores(int solves) {
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  openblas_set_num_threads(std::max(1, cores / solves));
+  share_large_products(std::max(1, cores / solves));
 }
 
 }  // namespace signorini::server

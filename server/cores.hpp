@@ -8,7 +8,7 @@ namespace signorini::server {
 void use_vector_instructions(char** argv);
 
 /// Gives every one of so many solves that run at once its share of the cores: the factorisation works in the
-/// threads of BLAS, and more threads than cores make all of them slower.
+/// threads of BLAS where its products are large, and more threads than cores make all of them slower.
 void share_cores(int solves);
 
 }  // namespace signorini::server

@@ -5,6 +5,7 @@
 #include <cblas.h>
 
 #include "progress/progress.hpp"
+#include "system/large_products.hpp"
 #include "system/symmetric_update.hpp"
 
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -19,6 +20,7 @@ template <typename AfterBlock>
 bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Progress& progress,
                          const AfterBlock& after_block) {
   constexpr int kBlock = 256, kStrip = 1024;
+  const LargeProducts products(static_cast<double>(rows) * rows * pivots);
   const auto at = [&](int row, int column) {
     return matrix + static_cast<std::ptrdiff_t>(column) * distance + row;
   };
