@@ -56,16 +56,20 @@ Outcome judged(Outcome outcome, const Residuals& residuals, const Settings& sett
 std::string advice(const Settings& settings, Outcome outcome, int iterations) {
   const std::string after =
       " after " + std::to_string(iterations) + (iterations == 1 ? " iteration" : " iterations");
-  const bool paper = std::holds_alternative<PaperUzawa>(settings.method);
-  const std::string faster =
-      paper ? "use rho and augmentation \"auto\", or active_set" : "raise max_iterations or use active_set";
+  const bool paper = std::holds_alternative<PaperUzawa>(settings.method),
+             exact = std::holds_alternative<ActiveSet>(settings.method);
+  const std::string other = paper ? "use rho and augmentation \"auto\", or active_set" : "use active_set";
+  const std::string faster = exact   ? "raise max_iterations"
+                             : paper ? other
+                                     : "raise max_iterations or " + other;
   switch (outcome) {
     case Outcome::converged:
       return "";
     case Outcome::iteration_limit:
       return "the tolerance was not met" + after + ": raise the tolerance, " + faster;
     case Outcome::time_limit:
-      return "the time limit was reached" + after + ": raise solver.time_limit, or " + faster;
+      return "the time limit was reached" + after + ": raise solver.time_limit, or " +
+             (exact ? "coarsen the mesh" : other);
     case Outcome::stalled:
       return why_stalled(settings, after);
     case Outcome::tolerance_not_met:

@@ -9,6 +9,7 @@
 #include "norms.hpp"
 #include "problems/membrane.hpp"
 #include "problems/sanitized.hpp"
+#include "result/outcome.hpp"
 
 namespace signorini::methods_test {
 namespace {
@@ -390,6 +391,22 @@ TEST(Methods, ShowNoRowThatIsNotFinite) {
           // It may say so instead.
         }
       }
+}
+
+/// Found from outside: the active set was advised to itself.
+TEST(Limits, AreFollowedByAdviceThatHelps) {
+  const Settings exact{ActiveSet{}, {}}, uzawa{Mprgp{}, {}};
+  const auto says = [](const Settings& settings, Outcome outcome, const std::string& word) {
+    return advice(settings, outcome, 3).find(word) != std::string::npos;
+  };
+  for (const Outcome outcome : {Outcome::time_limit, Outcome::iteration_limit}) {
+    EXPECT_FALSE(says(exact, outcome, "active_set"));
+    EXPECT_TRUE(says(uzawa, outcome, "active_set"));
+  }
+  for (const Settings& settings : {exact, uzawa}) {
+    EXPECT_FALSE(says(settings, Outcome::time_limit, "max_iterations"));
+    EXPECT_TRUE(says(settings, Outcome::iteration_limit, "max_iterations"));
+  }
 }
 
 /// Counts how often it is asked, and takes a moment each time after so many.
