@@ -13,7 +13,7 @@ namespace {
 /// Elements of a leaf, at least: fewer make the factor sparser, more make its blocks denser.
 constexpr int kLeaf = 8;
 
-/// Coordinates that differ by less of a piece's extent differ by rounding.
+/// Of the way from one half to the other: what differs by less differs by rounding.
 constexpr double kRounding = 1e-9;
 
 /// Whether the second half of a piece is the first, moved: element by element.

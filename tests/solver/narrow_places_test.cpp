@@ -120,18 +120,21 @@ Polygon toothed(int teeth, double height, double foot, double flank) {
   return polygon;
 }
 
+/// A mesh has no more triangles and edges of its boundary than so many times those that are foreseen.
+void expect_no_more(const Polygon& polygon, double size, double triangles, double edges) {
+  const Domain domain = polygon;
+  const MeshRequest request(LargestEdge{size});
+  const MeshSizes foreseen = PredictedSizes(domain)(request),
+                  made = sizes_of(make_domain_mesh(domain, request));
+  EXPECT_GE(triangles * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
+  EXPECT_GE(edges * static_cast<double>(foreseen.edges_of_parts()),
+            static_cast<double>(made.edges_of_parts()));
+}
+
 /// Found from outside: between them the mesher cuts for the angles of its triangles, more often than their
 /// width asks for.
 TEST(NarrowPlaces, BetweenTeethAreCutForTheirAngles) {
-  const auto expect = [](const Polygon& polygon, double size) {
-    const Domain domain = polygon;
-    const MeshRequest request(LargestEdge{size});
-    const MeshSizes foreseen = PredictedSizes(domain)(request),
-                    made = sizes_of(make_domain_mesh(domain, request));
-    EXPECT_GE(1.02 * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
-    EXPECT_GE(1.15 * static_cast<double>(foreseen.edges_of_parts()),
-              static_cast<double>(made.edges_of_parts()));
-  };
+  const auto expect = [](const Polygon& polygon, double size) { expect_no_more(polygon, size, 1.02, 1.15); };
   for (const double size : {0.05, 0.2, 0.5})
     for (double steepness = 1; steepness < 40; steepness *= 1.25) {
       SCOPED_TRACE(std::to_string(size) + ", steepness " + std::to_string(steepness));
@@ -161,13 +164,7 @@ TEST(NarrowPlaces, BetweenTheSidesOfABandAreCutForThoseAcross) {
       const double size = piece / share, height = width * size;
       Polygon band{{{0, 0}, {length, 0}, {length, height}, {0, height}}, {}, {}};
       band.sides = {"bottom", "right", "top", "left"};
-      const Domain domain = band;
-      const MeshRequest request(LargestEdge{size});
-      const MeshSizes foreseen = PredictedSizes(domain)(request),
-                      made = sizes_of(make_domain_mesh(domain, request));
-      EXPECT_GE(1.07 * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
-      EXPECT_GE(1.07 * static_cast<double>(foreseen.edges_of_parts()),
-                static_cast<double>(made.edges_of_parts()));
+      expect_no_more(band, size, 1.07, 1.07);
     }
 }
 
