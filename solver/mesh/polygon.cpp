@@ -18,6 +18,7 @@
 
 #include "mesh/chains.hpp"
 #include "mesh/corner_order.hpp"
+#include "mesh/domain_mesher.hpp"
 #include "mesh/make_mesh.hpp"
 #include "mesh/rings.hpp"
 #include "mesh/segments.hpp"
@@ -126,7 +127,7 @@ class Criteria {
   const SizeField* sizes_;
 };
 
-using Mesher = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
+using Marking = CGAL::Delaunay_mesher_2<Triangulation, Criteria>;
 
 /// The order in which points are inserted. Many go along a curve that fills the plane, in rounds of more and
 /// more (Amenta, Choi and Rote 2003): along a zigzag each would change as many triangles as there are.
@@ -184,9 +185,9 @@ Face face_inside(const Triangulation& triangulation, const std::vector<Vertex>& 
 }
 
 void mark_domain(Triangulation& triangulation, const std::vector<Vertex>& vertices, const Rings& unit) {
-  Mesher::mark_convex_hull(triangulation);
+  Marking::mark_convex_hull(triangulation);
   for (int hole = 1; hole < unit.size(); ++hole)
-    Mesher::propagate_marks(face_inside(triangulation, vertices, unit, hole), false);
+    Marking::propagate_marks(face_inside(triangulation, vertices, unit, hole), false);
 }
 
 [[noreturn]] void refuse_size(int max_triangles) {
@@ -216,11 +217,10 @@ Rings halved_to_size(Rings rings, const SizeField& sizes, const UnitFrame& frame
 }
 
 void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles, Progress* progress) {
-  Mesher mesher(triangulation, Criteria(sizes));
-  mesher.init(true);
+  DomainMesher mesher(triangulation, Criteria(sizes));
   // By Euler's formula there are fewer triangles than twice the vertices, and hardly fewer in a fine mesh.
   const auto enough_vertices = static_cast<std::size_t>(max_triangles / 2);
-  for (int step = 0; mesher.try_one_step_refine_mesh(); ++step) {
+  for (int step = 0; mesher.try_one_step(); ++step) {
     if (progress) progress->check_in(step);
     if (triangulation.number_of_vertices() > enough_vertices) refuse_size(max_triangles);
   }

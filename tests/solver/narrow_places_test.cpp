@@ -258,6 +258,33 @@ TEST(NarrowPlaces, AreFoundSoonAmongManyEdges) {
   EXPECT_GT(found, 1e6);
 }
 
+/// A comb of teeth of random heights with slots between them.
+Polygon uneven_teeth(int teeth, double slot, std::mt19937& random) {
+  std::uniform_real_distribution<double> height(1.2, 2);
+  Polygon comb{{{0, -0.1}, {teeth + (teeth - 1) * slot, -0.1}}, {}, {}};
+  for (int tooth = teeth - 1; tooth >= 0; --tooth) {
+    const double left = tooth * (1 + slot), top = height(random);
+    comb.vertices.insert(comb.vertices.end(), {{left + 1, 0}, {left + 1, top}, {left, top}, {left, 0}});
+  }
+  comb.vertices.erase(comb.vertices.begin() + 2);
+  comb.vertices.pop_back();
+  return comb;
+}
+
+TEST(NarrowPlaces, OutsideTheDomainCutNothing) {
+  std::mt19937 random(3);
+  for (const double slot : {1e-2, 1e-4, 1e-7})
+    for (const int teeth : {2, 7, 20}) {
+      const Mesh mesh = polygon_mesh(uneven_teeth(teeth, slot, random), 0.5);
+      // The floors of the slots are edges of the domain, from which triangles grow.
+      EXPECT_LT(mesh.triangles.size(), (60 - 15 * std::log2(slot)) * teeth)
+          << teeth << " teeth, slots of " << slot;
+      EXPECT_EQ(misfiled_edges(mesh), 0);
+      EXPECT_LE(longest_edge(mesh), 0.5 * (1 + 1e-8));
+      EXPECT_GT(smallest_angle(mesh), 20);
+    }
+}
+
 /// A star-shaped ring of a random shape, spiky at times.
 std::vector<Point> random_ring(std::mt19937& random, int vertices, const Point& centre, double radius) {
   const auto between = [&](double a, double b) { return std::uniform_real_distribution(a, b)(random); };
