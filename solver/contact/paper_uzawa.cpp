@@ -54,6 +54,7 @@ void UzawaIteration::eliminate(Factorization by, Progress& progress) {
   ElementSum matrix;
   matrix.size = discrete_.traces.free_unknowns();
   matrix.per_element = n;
+  matrix.sides = discrete_.mesh.triangle_edges;
   PerShape<Shape> shapes(discrete_);
   for (int t = 0; t < triangles; ++t) {
     progress.check_in(t);

@@ -20,7 +20,13 @@ namespace signorini {
 /// two triangles alike to the last bit.
 template <typename Value>
 class ShapeMemory {
+  static constexpr int kBits = 4;
+  /// Shapes that come in turn, four in a crossed square, may have one place: the last ones are kept there.
+  static constexpr int kAlike = 4;
+
  public:
+  static constexpr int kMost = kAlike << kBits;  ///< shapes that are remembered
+
   explicit ShapeMemory(const AffineMap& first) : digits_per_length_(digits_per_length(first)) {}
 
   /// The value for a triangle, made if need be; valid until the next call.
@@ -57,9 +63,6 @@ class ShapeMemory {
     Eigen::Matrix2d jacobian;
     Value value;
   };
-  static constexpr int kBits = 4;
-  /// Shapes that come in turn, four in a crossed square, may have one place: the last ones are kept there.
-  static constexpr int kAlike = 4;
   /// What a difference of coordinates is exact to on a few thousand divisions.
   static constexpr double kRounding = 1e-12;
 

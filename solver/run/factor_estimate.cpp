@@ -104,10 +104,11 @@ bool exist(const std::array<int, 3>& numbers, const std::vector<Point>& points) 
   return std::ranges::all_of(numbers, [&](int i) { return i >= 0 && i < static_cast<int>(points.size()); });
 }
 
-/// The number of the corner of a triangle that is not on its side.
+/// The number of the corner of a triangle that is not on its side; any of a triangle that has a point twice,
+/// which is for the solve to refuse.
 int opposite(const std::array<int, 3>& triangle, const std::array<int, 2>& side) {
-  const auto corner =
-      std::ranges::find_if(triangle, [&](int point) { return std::ranges::count(side, point) == 0; });
+  const auto corner = std::find_if(triangle.begin(), triangle.end() - 1,
+                                   [&](int point) { return std::ranges::count(side, point) == 0; });
   return static_cast<int>(corner - triangle.begin());
 }
 
@@ -148,16 +149,16 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
     for (const auto& edge : *edges) conditions.emplace_back(ascending(edge), condition);
   std::ranges::sort(conditions);
 
-  // The unknowns of the dissection: an edge each, a point each, and those edges again that are contact; in an
-  // element by the corners, so that the elements of one shape have theirs in one order.
-  constexpr int nowhere = -1, edges_at = 0, points_at = 3, contact_at = 6;
+  // The unknowns of the dissection: two an edge, at its ends, which neighbours have in turn, one a point, and
+  // one for each edge that is contact; in an element by the corners, so that the elements of one shape have
+  // theirs in one order.
+  constexpr int nowhere = -1, at_ends = 2, ends_at = 0, points_at = 6, contact_at = 9, per_element = 12;
   ElementSum sum;
-  sum.per_element = 9;
-  sum.unknowns.assign(9 * triangles.size(), nowhere);
+  sum.per_element = per_element;
+  sum.unknowns.assign(per_element * triangles.size(), nowhere);
   sum.matrix_of.resize(triangles.size());
-  const auto place = [&](const TriangleEdge& side, int kind) -> int& {
-    const int corner = opposite(triangles[side.triangle], side.points);
-    return sum.unknowns[9 * static_cast<std::size_t>(side.triangle) + kind + corner];
+  const auto place = [&](int triangle, int at) -> int& {
+    return sum.unknowns[per_element * static_cast<std::size_t>(triangle) + at];
   };
   // As assemble() numbers them: by their shapes, and by the sides on which their traces are turned.
   std::iota(sum.matrix_of.begin(), sum.matrix_of.end(), 0);
@@ -166,18 +167,28 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
   for (int& number : sum.matrix_of) number *= 8;
   std::vector<int> traces;
   std::vector<TriangleEdge> contact;
+  std::vector<std::array<int, 3>> edges_of(triangles.size());
+  int edges = 0;
+  const auto corner_opposite = [&](const TriangleEdge& side) {
+    return opposite(triangles[side.triangle], side.points);
+  };
   EdgeTable(triangles).for_each_edge([&](const auto& sides) {
     if (sides.size() == 1) ++boundary_edges_;
+    for (const TriangleEdge& side : sides) edges_of[side.triangle][corner_opposite(side)] = edges;
+    ++edges;
     const auto known =
         std::ranges::lower_bound(conditions, sides[0].points, {}, &decltype(conditions)::value_type::first);
     const Condition* const condition =
         sides.size() == 1 && known != conditions.end() && known->first == sides[0].points ? known->second
                                                                                           : nullptr;
     if (const int unknown = traces_on(condition, components); unknown > 0) {
-      for (const TriangleEdge& side : sides) place(side, edges_at) = static_cast<int>(traces.size());
-      traces.push_back(unknown);
-      if (unknown < components)
-        sum.matrix_of[sides[0].triangle] += 1 << opposite(triangles[sides[0].triangle], sides[0].points);
+      const int first = static_cast<int>(traces.size());
+      for (const TriangleEdge& side : sides)
+        for (int end = 0; end < at_ends; ++end)
+          place(side.triangle, ends_at + at_ends * corner_opposite(side) + end) =
+              first + (side.forward ? end : 1 - end);
+      traces.insert(traces.end(), at_ends, unknown);
+      if (unknown < components) sum.matrix_of[sides[0].triangle] += 1 << corner_opposite(sides[0]);
     }
     if (condition != nullptr && std::holds_alternative<Contact>(*condition)) contact.push_back(sides[0]);
   });
@@ -186,11 +197,11 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
     const auto& [a, b, c] = triangles[t];
     sum.centres.push_back((points[a] + points[b] + points[c]) / 3);
-    for (int i = 0; i < 3 && with_rotation > 0; ++i)
-      sum.unknowns[9 * static_cast<std::size_t>(t) + points_at + i] = with_traces + triangles[t][i];
+    for (int i = 0; i < 3 && with_rotation > 0; ++i) place(t, points_at + i) = with_traces + triangles[t][i];
   }
   for (int i = 0; i < static_cast<int>(contact.size()); ++i)
-    place(contact[i], contact_at) = with_traces + with_rotation + i;
+    place(contact[i].triangle, contact_at + corner_opposite(contact[i])) = with_traces + with_rotation + i;
+  sum.sides = edges_of;
   sum.size = with_traces + with_rotation + static_cast<int>(contact.size());
   contact_edges_ = static_cast<double>(contact.size());
 
@@ -203,7 +214,7 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
     Share share;
     for (const int unknown : unknowns) {
       if (unknown < with_traces)
-        share.traces += traces[unknown];
+        share.traces += traces[unknown] / static_cast<double>(at_ends);
       else
         (unknown < with_traces + with_rotation ? share.points : share.contact) += 1;
     }

@@ -7,9 +7,11 @@
 #include "certify/data/linear_remainder.hpp"
 #include "certify/displacement/star_relaxation.hpp"
 #include "fem/load_projection.hpp"
+#include "fem/per_shape.hpp"
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
 #include "progress/observer.hpp"
+#include "system/elimination.hpp"
 
 namespace signorini {
 namespace {
@@ -302,6 +304,14 @@ double on_boundary(const SolveSizes& sizes) {
          of_part * sizes.parts;
 }
 
+/// What triangles of one shape share while their fields are found (system/recovery.cpp), of the shapes that
+/// are remembered.
+double shapes_of_recovery(const Problem& problem, const SolveSizes& sizes) {
+  using Shape = std::pair<Elimination, StrainMoments>;
+  const double most = is_constant(problem.material) ? ShapeMemory<Shape>::kMost : 1;
+  return sizeof(Shape) * std::min(most, sizes.own_shapes * sizes.triangles);
+}
+
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
@@ -313,7 +323,7 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
                            sizes.triangles * element_sum(spaces, sizes.own_shapes);
   // The traces as they were found, and the solution; and what is made on the way to it.
   const double found = right + fields_of_solution(spaces, sizes.triangles);
-  const double finding = factor + 4 * right + complement + found;
+  const double finding = factor + 4 * right + complement + found + shapes_of_recovery(problem, sizes);
   const double certifying = kept + (kept > 0 ? 2 * (right + complement) : 0) + found +
                             sizes.triangles * kNumber * spaces.stresses() +
                             certificate(problem, spaces, sizes) + carrying(problem, spaces, sizes.triangles) +

@@ -10,7 +10,7 @@ namespace signorini {
 
 struct ElementSum;
 
-/// The elements of a mesh, cut into two halves that share few unknowns (system/short_cut.hpp), and the halves
+/// The elements of a mesh, cut into two halves that share few edges (system/short_cut.hpp), and the halves
 /// again, until a piece has a few.
 ///
 /// The pieces are a complete binary tree, numbered as in a heap: 1 is the whole, 2 k and 2 k + 1 are the

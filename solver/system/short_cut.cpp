@@ -66,14 +66,22 @@ std::vector<Centre> centres_of(const ElementSum& sum) {
   return centres;
 }
 
+SharedNumbers::SharedNumbers(const ElementSum& sum)
+    : all(sum.unknowns), per_element(sum.per_element), size(sum.size) {
+  if (sum.sides.empty()) return;
+  per_element = 3;
+  all = {sum.sides.front().data(), sum.sides.size() * 3};
+  size = *std::ranges::max_element(all) + 1;
+}
+
 ShortCut::ShortCut(const ElementSum& sum, int leaves)
-    : sum_(sum),
+    : numbers_(sum),
       elements_per_leaf_(static_cast<double>(sum.elements()) / leaves),
-      per_side_(static_cast<double>(std::ranges::count_if(sum.unknowns, [](int i) { return i >= 0; })) /
+      per_side_(static_cast<double>(std::ranges::count_if(numbers_.all, [](int i) { return i >= 0; })) /
                 (3. * sum.elements())),
-      seen_as_(sum.size, 0),
-      first_(sum.size),
-      last_(sum.size) {}
+      seen_as_(numbers_.size, 0),
+      first_(numbers_.size),
+      last_(numbers_.size) {}
 
 std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
   const Eigen::AlignedBox2d box = box_of(piece);
@@ -167,18 +175,18 @@ void ShortCut::divide_before(std::span<Centre> piece, double coordinate, int alo
   std::ranges::copy(second_half_, next);
 }
 
-/// How many unknowns the halves share.
+/// How many numbers the halves share.
 int ShortCut::shared(std::span<const Centre> piece, std::size_t first_half) {
   const int first = ++seen_, counted = ++seen_;
   for (const Centre& centre : piece.first(first_half))
-    for (const int unknown : sum_.unknowns_of(centre.element))
-      if (unknown >= 0) seen_as_[unknown] = first;
+    for (const int number : numbers_.of(centre.element))
+      if (number >= 0) seen_as_[number] = first;
   int count = 0;
   for (const Centre& centre : piece.subspan(first_half))
-    for (const int unknown : sum_.unknowns_of(centre.element))
-      if (unknown >= 0 && seen_as_[unknown] == first) {
+    for (const int number : numbers_.of(centre.element))
+      if (number >= 0 && seen_as_[number] == first) {
         ++count;
-        seen_as_[unknown] = counted;
+        seen_as_[number] = counted;
       }
   return count;
 }
@@ -194,26 +202,26 @@ ShortCut::Cut ShortCut::shortest(std::span<Centre> piece, std::size_t least, int
   const auto place = [&](std::size_t i) {
     return static_cast<int>(std::clamp(i + 1, least, most + 1) - least);
   };
-  const auto for_each_unknown = [&](const auto& visit) {
+  const auto for_each_number = [&](const auto& visit) {
     for (std::size_t i = 0; i < size; ++i)
-      for (const int unknown : sum_.unknowns_of(piece[i].element))
-        if (unknown >= 0) visit(unknown, place(i));
+      for (const int number : numbers_.of(piece[i].element))
+        if (number >= 0) visit(number, place(i));
   };
   const int found = ++seen_, counted = ++seen_;
-  for_each_unknown([&](int unknown, int at) {
-    if (seen_as_[unknown] != found) {
-      seen_as_[unknown] = found;
-      first_[unknown] = at;
+  for_each_number([&](int number, int at) {
+    if (seen_as_[number] != found) {
+      seen_as_[number] = found;
+      first_[number] = at;
     }
-    last_[unknown] = at;
+    last_[number] = at;
   });
-  // By how many more unknowns a cut after a place shares than the one before it.
+  // By how many more numbers a cut after a place shares than the one before it.
   std::vector<int> more(most - least + 2, 0);
-  for_each_unknown([&](int unknown, int) {
-    if (seen_as_[unknown] == counted) return;
-    seen_as_[unknown] = counted;
-    ++more[first_[unknown]];
-    --more[last_[unknown]];
+  for_each_number([&](int number, int) {
+    if (seen_as_[number] == counted) return;
+    seen_as_[number] = counted;
+    ++more[first_[number]];
+    --more[last_[number]];
   });
   std::vector<double> ratios;
   int share = 0;

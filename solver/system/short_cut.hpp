@@ -20,7 +20,20 @@ struct Centre {
 
 std::vector<Centre> centres_of(const ElementSum& sum);
 
-/// Cuts pieces of a mesh in two, across x or y, so that the halves share few unknowns.
+/// What elements share, by its numbers below `size`: so many an element, -1 for none.
+struct SharedNumbers {
+  explicit SharedNumbers(const ElementSum& sum);
+
+  std::span<const int> of(int element) const {
+    return all.subspan(static_cast<std::size_t>(element) * per_element, per_element);
+  }
+
+  std::span<const int> all;
+  int per_element, size;
+};
+
+/// Cuts pieces of a mesh in two, across x or y, so that the halves share few edges, or unknowns where nothing
+/// is known of edges (ElementSum::sides).
 ///
 /// That is in the widest gap near the median of the longer extent, between squares if there are any, where it
 /// is as short as a cut between squares would be. Arms and long triangles make it longer: then it is the cut
@@ -58,11 +71,11 @@ class ShortCut {
   int shared(std::span<const Centre> piece, std::size_t first_half);
   Cut shortest(std::span<Centre> piece, std::size_t least_half, int along);
 
-  const ElementSum& sum_;
+  const SharedNumbers numbers_;
   const double elements_per_leaf_;
-  const double per_side_;  ///< unknowns of a side with one of its points: a third of a triangle's
+  const double per_side_;  ///< numbers of a side: a third of a triangle's
   int seen_ = 0;
-  std::vector<int> seen_as_;       ///< of each unknown: what it was last seen as,
+  std::vector<int> seen_as_;       ///< of each number: what it was last seen as,
   std::vector<int> first_, last_;  ///< and the places of its elements in the piece that was last looked at
   std::vector<double> between_;    ///< the coordinates near the median of that piece
   std::vector<Centre> second_half_;

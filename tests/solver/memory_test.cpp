@@ -835,6 +835,31 @@ TEST_P(Memory, OfASaw) {
   }
 }
 
+/// A comb whose thin teeth stand on a thin back.
+Polygon comb(int teeth, double width, double slot, double height, double back) {
+  const double pitch = width + slot, length = teeth * pitch - slot;
+  Polygon polygon{{{0, -back}, {length, -back}}, {}, {"foot", "others"}};
+  for (int tooth = teeth - 1; tooth >= 0; --tooth) {
+    const double left = tooth * pitch, right = left + width;
+    polygon.vertices.insert(polygon.vertices.end(), {{right, 0}, {right, height}, {left, height}, {left, 0}});
+  }
+  polygon.sides.resize(polygon.vertices.size(), "others");
+  return polygon;
+}
+
+/// Found from outside: the pieces of its teeth looked more alike than the solve has them.
+TEST_P(Memory, OfACombWithThinTeeth) {
+  for (const auto& [teeth, height, refine] :
+       {std::tuple(8, 2.2, 0), std::tuple(15, 1.118, 0), std::tuple(35, 2.2, 1), std::tuple(24, 1.49, 1)}) {
+    SCOPED_TRACE(teeth);
+    Problem problem = in_polygon(elastic(GetParam(), 1, 1), 0.5);
+    problem.domain = comb(teeth, 0.05, 0.005, height, 0.05);
+    problem.mesh.refine = refine;
+    problem.boundary = {{"foot", Fixed{}}};
+    expect_bound(problem);
+  }
+}
+
 /// Of which a coarser mesh shows the shape, but not the cuts.
 TEST_P(Memory, OfAnAngle) {
   Problem angle = in_polygon(elastic(GetParam(), 1, 1), 0.0615);

@@ -148,6 +148,7 @@ void Extensions::add_elements(const LawOnMesh& laws) {
   for (int& unknown : unknowns_)
     if (unknown == 0) unknown = stiffness_.size++;
   stiffness_.per_element = 3 * D;
+  stiffness_.sides = discrete_.mesh.triangle_edges;
   const auto triangles = static_cast<std::size_t>(discrete_.triangles());
   stiffness_.unknowns.reserve(3 * D * triangles);
   stiffness_.matrix_of.reserve(triangles);
