@@ -33,9 +33,36 @@ Kernel::Point_2 moved(const Point& x, const Point& first, std::size_t number) {
   return {(x.x() - first.x()) * by(turns), (x.y() - first.y()) * by(2 * turns)};
 }
 
-/// Those of Delaunay's triangulation, the shortest first. Each set of points that is apart from the others is
-/// connected with the closest of them by one.
-std::vector<Connection> connections(const std::vector<Point>& points) {
+/// Which ways lead into the domain.
+class Inside {
+ public:
+  explicit Inside(const Rings& rings) : rings_(rings) {
+    for (int ring = 0; ring < rings.size(); ++ring)
+      on_the_left_.push_back(rings.has_domain_on_the_left(ring));
+  }
+
+  /// From a point of the rings straight to another.
+  bool operator()(int from, int to) const {
+    const Point& at = rings_.points[from];
+    Vector first = rings_.points[rings_.next(from)] - at, last = rings_.points[rings_.before(from)] - at;
+    if (!on_the_left_[rings_.ring[from]]) std::swap(first, last);
+    const Vector way = rings_.points[to] - at;
+    return cross(first, last) > 0 ? cross(first, way) > 0 && cross(way, last) > 0
+                                  : cross(last, way) < 0 || cross(way, first) < 0;
+  }
+
+ private:
+  static double cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+  const Rings& rings_;
+  std::vector<bool> on_the_left_;  ///< of the edges of each ring
+};
+
+/// The edges of the rings, and of Delaunay's triangulation those that lead through the domain, the shortest
+/// first. Each set of points that is apart from the others is connected with the closest of them by one.
+std::vector<Connection> connections(const Rings& rings) {
+  const std::vector<Point>& points = rings.points;
+  const Inside is_inside(rings);
   std::vector<std::pair<Kernel::Point_2, int>> numbered;
   for (std::size_t i = 0; i < points.size(); ++i)
     numbered.emplace_back(moved(points[i], points[0], i), static_cast<int>(i));
@@ -45,7 +72,12 @@ std::vector<Connection> connections(const std::vector<Point>& points) {
   for (const auto& [face, side] : triangulation.finite_edges()) {
     const auto [from, to] = std::minmax(face->vertex(Triangulation::cw(side))->info(),
                                         face->vertex(Triangulation::ccw(side))->info());
-    all.push_back({{from, to}, (points[to] - points[from]).norm()});
+    if (is_inside(from, to) && is_inside(to, from))
+      all.push_back({{from, to}, (points[to] - points[from]).norm()});
+  }
+  for (int from = 0; from < static_cast<int>(points.size()); ++from) {
+    const auto [a, b] = std::minmax({from, rings.next(from)});
+    all.push_back({{a, b}, (points[b] - points[a]).norm()});
   }
   std::ranges::sort(all, {}, [](const Connection& each) { return std::pair(each.distance, each.points); });
   return all;
@@ -57,7 +89,8 @@ double extent(const Box& box) {
 
 }  // namespace
 
-std::vector<Cluster> clusters(const std::vector<Point>& points) {
+std::vector<Cluster> clusters(const Rings& rings) {
+  const std::vector<Point>& points = rings.points;
   std::vector<int> leader(points.size());
   std::iota(leader.begin(), leader.end(), 0);
   const auto find = [&](int point) {
@@ -67,7 +100,7 @@ std::vector<Cluster> clusters(const std::vector<Point>& points) {
   std::vector<Box> boxes;
   for (const Point& x : points) boxes.push_back({x, x});
   std::vector<Cluster> found;
-  for (const auto& [ends, distance] : connections(points)) {
+  for (const auto& [ends, distance] : connections(rings)) {
     const int one = find(ends[0]), other = find(ends[1]);
     if (one == other) continue;
     for (const int each : {one, other})

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 
 #include "mesh/import.hpp"
 #include "mesh/mesh_sizes.hpp"
@@ -167,7 +168,8 @@ std::optional<Mesh> make_small_mesh(const Domain& domain, const MeshRequest& req
   if (const auto* polygon = std::get_if<Polygon>(&domain)) {
     const auto enough = static_cast<std::size_t>(most);
     if (2 * Rings(*polygon).points.size() > enough) return std::nullopt;
-    if (followed_rings(*polygon, enough).points.size() > enough) return std::nullopt;
+    constexpr double any_chord = std::numeric_limits<double>::infinity();
+    if (followed_rings(*polygon, any_chord, enough).points.size() > enough) return std::nullopt;
   }
   if (PredictedSizes(domain)(request).triangles > most) return std::nullopt;
   if (const auto* data = std::get_if<MeshData>(&domain)) return import_sound_mesh(*data);

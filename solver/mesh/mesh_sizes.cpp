@@ -60,17 +60,21 @@ double halvings(double length, double longest) {
   return std::ldexp(1, half > 0.5 ? exponent : exponent - 1);
 }
 
-/// The cotangent of the sharpest angle of a triangle, 20.7 degrees.
-constexpr double kSharpestAngle = 2.65;
+/// The cotangent of the sharpest angle of a triangle, 20.7 degrees: √7, and a little less for rounding.
+constexpr double kSharpestAngle = 2.6457;
 
 /// What becomes of a stretch of the boundary: the mesher halves it until its pieces are no longer than the
 /// size, no point across the domain lies in the circle around one, or nearly, and no triangle across is too
 /// sharp.
 struct Pieces {
   Pieces(const NarrowPlaces::Stretch& stretch, double size) {
-    const double longest = std::min({size * (1 + 1e-9), 1.9 * stretch.width, kSharpestAngle * stretch.least});
+    const double empty_circle = stretch.is_mirrored ? stretch.length : 1.9 * stretch.width;
+    // What is narrower at one end alone has pieces there that grow from it, not all of its own.
+    const double narrow_end = std::max(stretch.least, stretch.width / kGrowing);
+    const double longest = std::min({size * (1 + 1e-9), empty_circle, kSharpestAngle * narrow_end});
     const double of_part = halvings(stretch.length, longest);
     count = of_part * stretch.parts;
+    if (stretch.least < narrow_end) growing = stretch.parts * std::log2(narrow_end / stretch.least);
     length = stretch.length / of_part;
     const double way_across_squared = length * length + stretch.width * stretch.width;
     constexpr double well_meeting = 0.78 * 2;  // sizes, as measured on bands
@@ -96,10 +100,13 @@ struct Pieces {
     return length < 0.9 ? 1.25 : 1.5;
   }
 
+  static constexpr double kGrowing = 4;
+
   double count, length;
-  double cuts = 1;    ///< into so many is each cut whose triangles are counted as if it was not
-  bool reach_across;  ///< one triangle does
-  bool meet_halfway;  ///< those of both sides, at one row of points between them
+  double growing = 0;  ///< more of them, from the narrow ends
+  double cuts = 1;     ///< into so many is each cut whose triangles are counted as if it was not
+  bool reach_across;   ///< one triangle does
+  bool meet_halfway;   ///< those of both sides, at one row of points between them
   /// The diagonal of their square is hardly too long: those of a whole band may be halved, in chains.
   bool halve_those_across;
   static constexpr double kMoreOfHalved = 0.2;  // as measured on bands
@@ -150,6 +157,21 @@ struct Tip {
       filled = std::min(filled, std::max(local.size, (local.at - at).norm() - local.radius));
     constexpr double by_width = 0.75;  // as measured
     return by_width * std::log(std::min(reach, std::max(filled, size / slope)) / filled) / slope;
+  }
+};
+
+/// A corner that is not sharp between edges of unlike lengths. Those of the mesh on the longer one grow from
+/// the length of the shorter one; their triangles are counted with the cluster of its ends.
+struct Step {
+  int longer;
+  std::array<double, 2> lengths;  ///< of the shorter edge and of the longer one
+
+  static constexpr double kSharp = -0.5;  ///< cosine of the angle in the domain
+
+  /// As measured; the first is there anyway.
+  double edges(double size) const {
+    constexpr double by_doubling = 1.2;
+    return std::max(0., by_doubling * std::log2(std::min(lengths[1], size) / lengths[0]) - 1);
   }
 };
 
@@ -211,8 +233,9 @@ class PredictedSizes::OfPolygon {
     for (int ring = 0; ring < rings_.size(); ++ring)
       turns_.push_back(rings_.has_domain_on_the_left(ring) ? 1 : -1);
     find_tips();
+    find_steps();
     find_floors();
-    clusters_ = clusters(rings_.points);
+    clusters_ = clusters(rings_);
   }
 
   MeshSizes operator()(const MeshRequest& request) const {
@@ -227,7 +250,8 @@ class PredictedSizes::OfPolygon {
     };
     for (const NarrowPlaces::Stretch& stretch : stretches_) {
       const Pieces pieces(stretch, size);
-      add(stretch.edge, pieces.cuts * pieces.count);
+      add(stretch.edge, pieces.cuts * pieces.count + pieces.growing);
+      triangles += kTrianglesByShortEdge * pieces.growing;
       if (pieces.reach_across)
         across += kTrianglesAcross * pieces.count;
       else
@@ -245,6 +269,7 @@ class PredictedSizes::OfPolygon {
         add(edge, pieces);
         across += kTrianglesAcross * pieces + Tip::kTrianglesBehind;
       }
+    for (const Step& step : steps_) add(step.longer, step.edges(size));
     for (const Floor& floor : floors_)
       for (const int wall : floor.walls) {
         const double cuts = floor.cuts(std::min(size, length_of(wall)));
@@ -281,6 +306,19 @@ class PredictedSizes::OfPolygon {
       const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other);
       if (sine > 0 && sine < Tip::kBlunt && (from - at).dot(to - at) > 0)
         tips_.push_back({at, {e, behind}, 0.5 * std::min(own, other), sine});
+    }
+  }
+
+  void find_steps() {
+    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
+      const int behind = rings_.next(e);
+      const Point &at = rings_.points[behind], &to = rings_.points[rings_.next(behind)];
+      const Vector back = rings_.points[e] - at, on = to - at;
+      const double own = back.norm(), other = on.norm();
+      const bool is_convex = turns_[rings_.ring[e]] * twice_area(at, to, rings_.points[e]) > 0;
+      if (is_convex && back.dot(on) > Step::kSharp * own * other) continue;
+      const auto [shorter, longer] = std::minmax(own, other);
+      steps_.push_back({own > other ? e : behind, {shorter, longer}});
     }
   }
 
@@ -360,6 +398,7 @@ class PredictedSizes::OfPolygon {
   std::vector<double> turns_;  ///< of the rings: by which the area inside counts for the domain
   std::vector<NarrowPlaces::Stretch> stretches_;
   std::vector<Tip> tips_;
+  std::vector<Step> steps_;
   std::vector<Floor> floors_;
   std::vector<Cluster> clusters_;
 };

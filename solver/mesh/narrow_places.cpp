@@ -97,8 +97,14 @@ class Count {
       constexpr double half = 0.5 * (1 - 1e-9);  // where edges are halved, rounding has no say
       if (to_tip < half * std::min(own.length, edges_[other].length)) return false;
     }
-    const double right = own.way.x() * from_other.y() - own.way.y() * from_other.x();
-    return domain_on_the_left_[rings_.ring[edge]] ? right < 0 : right > 0;
+    return faces(edge, -from_other) && faces(other, x - edges_[other].begin);
+  }
+
+  /// Whether a way from a point of an edge leads to the side of the domain.
+  bool faces(int edge, const Vector& way) const {
+    const Vector& along = edges_[edge].way;
+    const double to_the_left = along.x() * way.y() - along.y() * way.x();
+    return domain_on_the_left_[rings_.ring[edge]] ? to_the_left > 0 : to_the_left < 0;
   }
 
   /// The distance, at most, of any point of a part of an edge from the other edges across the domain:
@@ -126,11 +132,36 @@ class Count {
     return least;
   }
 
+  /// Whether two edges are sides of a rectangle, so that both are cut at the same places.
+  static bool is_mirrored(const Edge& one, const Edge& other) {
+    constexpr double rounding = 1e-6;
+    const Vector from_end = one.begin - (other.begin + other.way),
+                 from_begin = one.begin + one.way - other.begin;
+    return std::abs(from_end.dot(one.way)) <= rounding / one.inverse &&
+           (from_end - from_begin).squaredNorm() <= rounding * rounding * from_end.squaredNorm();
+  }
+
+  /// Whether a vertex across comes much closer to a piece than the piece is long: of the edges in near_ from
+  /// `first` on.
+  bool is_narrow_within(const Piece& piece, std::size_t first) const {
+    constexpr double much = 8;
+    const Edge& edge = edges_[piece.edge];
+    const double closest = edge.length * (piece.end - piece.begin) / much;
+    for (std::size_t i = first; i < near_.size(); ++i) {
+      if (near_[i] == rings_.next(piece.edge)) continue;  // begins where this edge ends
+      const Vector to_vertex = edges_[near_[i]].begin - edge.begin;
+      const double share = to_vertex.dot(edge.way) * edge.inverse;
+      if (share <= piece.begin || share >= piece.end || !faces(piece.edge, to_vertex)) continue;
+      if ((to_vertex - share * edge.way).squaredNorm() < closest * closest) return true;
+    }
+    return false;
+  }
+
   void keep(const NarrowPlaces::Stretch& stretch) {
     const auto about = [](double width) { return std::floor(8 * std::log2(width)); };
     NarrowPlaces::Stretch* const last = found_.stretches.empty() ? nullptr : &found_.stretches.back();
     if (!last || last->edge != stretch.edge || last->length != stretch.length ||
-        about(last->width) != about(stretch.width)) {
+        last->is_mirrored != stretch.is_mirrored || about(last->width) != about(stretch.width)) {
       found_.stretches.push_back(stretch);
       return;
     }
@@ -158,12 +189,13 @@ class Count {
       if (distance < width) width = distance, nearest = near_[i];
     }
     constexpr double steps = 4;  // of a piece, that its middle speaks for
-    if (own <= steps * width) {
+    if (own <= steps * width && !is_narrow_within(piece, first)) {
       const bool is_narrow = width < whole;
       if (is_narrow) found_.triangles += own / width;
       constexpr double infinity = std::numeric_limits<double>::infinity();
       keep({piece.edge, own, is_narrow ? width : infinity,
-            is_narrow ? least_width(piece, nearest, width) : infinity, 1});
+            is_narrow ? least_width(piece, nearest, width) : infinity, 1,
+            is_narrow && is_mirrored(edge, edges_[nearest])});
       return;
     }
     if (found_.triangles >= enough_) return;

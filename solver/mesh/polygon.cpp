@@ -216,13 +216,23 @@ Rings halved_to_size(Rings rings, const SizeField& sizes, const UnitFrame& frame
   return rings;
 }
 
+int triangles_of_domain(const Triangulation& triangulation) {
+  return static_cast<int>(std::ranges::count_if(triangulation.finite_face_handles(),
+                                                [](Face face) { return face->is_in_domain(); }));
+}
+
 void refine(Triangulation& triangulation, const SizeField& sizes, int max_triangles, Progress* progress) {
   DomainMesher mesher(triangulation, Criteria(sizes));
-  // By Euler's formula there are fewer triangles than twice the vertices, and hardly fewer in a fine mesh.
-  const auto enough_vertices = static_cast<std::size_t>(max_triangles / 2);
+  // By Euler's formula there are fewer triangles than twice the vertices, and each that comes makes two at
+  // most. Counted anew when these might be too many, for on the boundary they make but one.
+  auto enough_vertices = static_cast<std::size_t>(max_triangles / 2);
   for (int step = 0; mesher.try_one_step(); ++step) {
     if (progress) progress->check_in(step);
-    if (triangulation.number_of_vertices() > enough_vertices) refuse_size(max_triangles);
+    if (triangulation.number_of_vertices() <= enough_vertices) continue;
+    const int triangles = triangles_of_domain(triangulation);
+    if (triangles > max_triangles) refuse_size(max_triangles);
+    enough_vertices =
+        triangulation.number_of_vertices() + static_cast<std::size_t>(max_triangles - triangles) / 2;
   }
 }
 
@@ -386,7 +396,7 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
                   Progress* progress) {
   throw_if_any(validate(polygon));
   throw_if_any(validate(polygon, size, sizes, max_triangles));
-  Rings rings = resolved_rings(polygon, size);
+  Rings rings = followed_rings(polygon, size);
   const UnitFrame frame(rings.points);
   const SizeField field(size, sizes, frame);
   rings = halved_to_size(std::move(rings), field, frame, max_triangles);

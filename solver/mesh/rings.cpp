@@ -189,13 +189,13 @@ Rings with_chords_halved(Rings rings, double closeness, int most_rounds, std::si
 
 }  // namespace
 
-Rings resolved_rings(const Polygon& polygon, double longest_chord) {
+Rings resolved_rings(const Polygon& polygon) {
   // Each round brings a chord four times closer to its arc.
-  return with_chords_halved(Rings(polygon, longest_chord), 0, 8, 15'000);
+  return with_chords_halved(Rings(polygon), 0, 8, 15'000);
 }
 
-Rings followed_rings(const Polygon& polygon, std::size_t most_points) {
-  return with_chords_halved(Rings(polygon), 2, 24, most_points);
+Rings followed_rings(const Polygon& polygon, double longest_chord, std::size_t most_points) {
+  return with_chords_halved(Rings(polygon, longest_chord), 2, 24, most_points);
 }
 
 }  // namespace signorini

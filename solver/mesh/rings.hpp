@@ -25,6 +25,7 @@ struct Rings {
 
   int size() const { return static_cast<int>(begin.size()) - 1; }
   int next(int point) const { return point + 1 < begin[ring[point] + 1] ? point + 1 : begin[ring[point]]; }
+  int before(int point) const { return (point > begin[ring[point]] ? point : begin[ring[point] + 1]) - 1; }
   Segment edge(int from) const { return {points[from], points[next(from)]}; }
 
   /// The JSON pointer of a ring, and of the vertex at which the side of an edge begins.
@@ -67,12 +68,13 @@ double domain_area(const Rings& rings);
 
 /// The rings of a polygon with so many chords that no two edges of which one is a chord cross, if the arcs
 /// themselves do not.
-Rings resolved_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity());
+Rings resolved_rings(const Polygon& polygon);
 
 /// The same with so many that the domain is about as narrow between them as between the arcs: none is farther
-/// from its arc than half of its distance from the nearest other edge. With about `most_points` they are as
-/// they are.
-Rings followed_rings(const Polygon& polygon, std::size_t most_points = 15'000);
+/// from its arc than half of its distance from the nearest other edge, or longer than `longest_chord`. With
+/// about `most_points` they are as they are.
+Rings followed_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity(),
+                     std::size_t most_points = 15'000);
 
 /// Edges of the rings, given in their frame, that have more in common than an end.
 std::vector<std::array<int, 2>> colliding_edges(const Rings& unit, std::size_t most);

@@ -64,7 +64,7 @@ class Estimation {
   static constexpr std::int64_t most_cut = 4 * few_triangles;
 
   /// And so many are made if no mesh of few shows the shape: some twentieth of a second at most, together.
-  static constexpr std::int64_t most_of_own_shape = 3 * few_triangles / 2;
+  static constexpr std::int64_t most_of_own_shape = 9 * few_triangles / 4;
 
   bool is_rectangle() const { return std::holds_alternative<Rectangle>(problem_.domain); }
   /// Of a part; null if it has another condition.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <numbers>
 #include <random>
@@ -207,7 +208,7 @@ TEST(NarrowPlaces, HaveLittleOfALocalSize) {
 }
 
 TEST(Clusters, AreWhatLiesCloseTogetherAndFarFromTheRest) {
-  const auto found = clusters({{0, 0}, {1, 0}, {0, 1}, {10, 0}, {10, 2}, {100, 0}});
+  const auto found = clusters(Rings(Polygon{{{0, 0}, {1, 0}, {10, 0}, {100, 0}, {10, 2}, {0, 1}}, {}, {}}));
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].extent, 1);
   EXPECT_EQ(found[0].distance, 9);
@@ -215,7 +216,62 @@ TEST(Clusters, AreWhatLiesCloseTogetherAndFarFromTheRest) {
   EXPECT_EQ(found[1].distance, 9);
   EXPECT_EQ(found[2].extent, 10);
   EXPECT_EQ(found[2].distance, 90);
-  EXPECT_TRUE(clusters({{0, 0}, {1, 0}, {2, 0}, {3, 0}}).empty());
+  EXPECT_TRUE(clusters(Rings(Polygon{{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1.5, 1}}, {}, {}})).empty());
+  // Not those on both sides of a slot, but its floor.
+  const auto beside_a_slot = clusters(Rings(slit(1e-6)));
+  EXPECT_EQ(std::ranges::count_if(beside_a_slot, [](const Cluster& own) { return own.extent < 0.1; }), 1);
+  EXPECT_NEAR(beside_a_slot[0].extent, 1e-6, 1e-12);
+  EXPECT_GT(beside_a_slot[0].distance, 0.3);
+}
+
+/// A disc with a circular hole that comes so close to its rim, in a direction.
+Polygon with_hole_at_the_rim(double distance, double radius, double angle) {
+  Polygon disc{{{1, 0}}, {}, {}};
+  disc.arcs.push_back({0, 0, {0, 0}, false});
+  const Point centre((1 - radius) * std::cos(angle), (1 - radius) * std::sin(angle));
+  disc.holes.push_back({centre + Point(radius - distance, 0)});
+  disc.arcs.push_back({1, 0, centre, false});
+  return disc;
+}
+
+/// Found from outside: where chords of both circles were parallel, the domain was as narrow all along them,
+/// and had twenty times the triangles that it has in other directions.
+TEST(NarrowPlaces, BetweenCirclesAreCutAlikeInAllDirections) {
+  for (const double distance : {1e-3, 1e-5}) {
+    const double least = 2 * std::numbers::pi / std::sqrt(distance * (1 / 0.3 - 1) / 2);
+    for (const double angle : {0., 0.3, std::numbers::pi / 4, 2.})
+      EXPECT_LT(polygon_mesh(with_hole_at_the_rim(distance, 0.3, angle), 1).triangles.size(), 1.5 * least)
+          << distance << " at " << angle;
+  }
+}
+
+/// Found from outside: what is seen across what lies outside, ends that are narrow, and places that are
+/// narrow in the middle of an edge.
+TEST(NarrowPlaces, OfAllKindsAreForeseen) {
+  for (const double e : {1e-2, 1e-4, 1e-6}) {
+    const std::vector<Polygon> polygons{
+        {{{0, 0}, {1, 0}, {1, 1}, {e, 1}, {0, 1 - e}}, {}, {}},                          // a corner cut off
+        {{{0, 0}, {1, 0}, {1, 1}, {0.5 + e, 0.5}, {1, 2}, {0, 2}, {0.5, 0.5}}, {}, {}},  // a waist
+        {{{0, 0}, {1, 0}, {1, 1}, {0.5 + e, 1}, {0.5, 0.3}, {0.5 - e, 1}, {0, 1}}, {}, {}},  // a notch
+        {kSquare, {{{0.3, 0.4}, {0.3 + e, 0.4}, {0.3 + e, 0.6}, {0.3, 0.6}}}, {}},           // a slot
+        {kSquare, {{{e, 0.5}, {0.2, 0.4}, {0.4, 0.5}, {0.2, 0.6}}}, {}},  // a vertex at the rim
+        {kSquare,
+         {{{0.1, 0.5}, {0.3, 0.4}, {0.5 - e, 0.5}, {0.3, 0.6}},
+          {{0.5, 0.5}, {0.7, 0.4}, {0.9, 0.5}, {0.7, 0.6}}},
+         {}},
+        // a slot that ends close to the rim
+        {{{0, 0}, {1, 0}, {1, 1}, {0.501, 1}, {0.501, e}, {0.5, e}, {0.5, 1}, {0, 1}}, {}, {}},
+        slit(e)};
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const Polygon& polygon = polygons[i];
+      const MeshRequest request(LargestEdge{3});
+      const MeshSizes foreseen = PredictedSizes(polygon)(request),
+                      made = sizes_of(make_domain_mesh(polygon, request));
+      EXPECT_LE(made.triangles, foreseen.triangles + 10) << i << " " << e;
+      EXPECT_GE(12 * made.triangles + 100, foreseen.triangles) << i << " " << e;
+      EXPECT_LE(5 * made.edges_of_parts(), 6 * foreseen.edges_of_parts() + 50) << i << " " << e;
+    }
+  }
 }
 
 TEST(NarrowPlaces, CornersAndSlitsNeedFewTriangles) {
