@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -92,10 +93,20 @@ struct EdgePressure {
   }
 };
 
+/// What is taken for the number of the solution that lies between two others, by that of the discrete one:
+/// that itself, the nearer end if it lies outside by rounding alone, or the middle; without a middle the
+/// nearer end.
+inline double estimate_within(double value, double lower, double upper) {
+  constexpr double rounding = 1e-9;  // of the interval
+  const double nearest = std::clamp(value, lower, upper), width = upper - lower;
+  return !std::isfinite(width) || std::abs(value - nearest) <= rounding * width ? nearest
+                                                                                : (lower + upper) / 2;
+}
+
 /// A number of the discrete solution with an interval that holds that of the solution.
 struct EnclosedNumber {
   double value = 0;     ///< of the discrete solution
-  double estimate = 0;  ///< the value, or the middle of the interval if that is outside
+  double estimate = 0;  ///< estimate_within() the interval
   /// Infinite where nothing finite is known.
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
 
@@ -106,9 +117,7 @@ struct EnclosedNumber {
 
 /// The value in its interval, with the estimate that follows from both.
 inline EnclosedNumber enclosed_number(double value, double lower, double upper) {
-  const bool is_inside = lower <= value && value <= upper, is_bounded = std::isfinite(upper - lower);
-  const double nearest = value < lower ? lower : upper;
-  return {value, is_inside ? value : is_bounded ? (lower + upper) / 2 : nearest, lower, upper};
+  return {value, estimate_within(value, lower, upper), lower, upper};
 }
 
 /// What is known of a stretch of a contact part. Of single points nothing is: an elastic body may lift off in
@@ -162,7 +171,7 @@ struct ErrorBound {
 struct EnclosedQuantity {
   std::string name;
   double value = 0;     ///< of the discrete solution
-  double estimate = 0;  ///< the value, or the middle of the interval if that is outside
+  double estimate = 0;  ///< estimate_within() the interval
   /// The interval; infinite where nothing finite is known.
   double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
   bool guaranteed = false;

@@ -155,8 +155,7 @@ class Encloser {
     if (own.is_bounded() && own.lower < 0 && own.upper >= 0 && is_nowhere_negative(quantity, discrete()))
       own.lower = 0;
     own.guaranteed = own.is_bounded() && own.unmet.empty();
-    if (own.is_bounded() && !(own.lower <= own.value && own.value <= own.upper))
-      own.estimate = (own.lower + own.upper) / 2;
+    own.estimate = estimate_within(own.value, own.lower, own.upper);
     if (quantity.is_mean) own *= 1 / length_of_parts(quantity, discrete().mesh);
     if (!std::isfinite(own.value) || !std::isfinite(own.estimate))
       throw SolveError("the numbers of the quantity " + own.name +
@@ -168,8 +167,7 @@ class Encloser {
   const Discretization& discrete() const { return condensed_.discretization(); }
 
   void enclose_opening(const Quantity& quantity, const Pull& pull, EnclosedQuantity& own) {
-    own.value = own.estimate =
-        opening_of(quantity, discrete(), discrete().clearance.clearance(fields_.clearance));
+    own.value = opening_of(quantity, discrete(), discrete().clearance.clearance(fields_.clearance));
     own.unmet = base_.unmet;
     const auto [lower, upper] =
         signorini::enclose_opening(quantity, base_, enclosure_.radius(), pull, progress_, own.unmet);
@@ -179,8 +177,7 @@ class Encloser {
 
   void enclose_by_dual(const Quantity& quantity, CondensedDual& condensed, EnclosedQuantity& own) {
     DualSolution dual(condensed_, condensed);
-    own.value = own.estimate =
-        value_of(quantity, dual.discretization(), discrete(), fields_.coupling, solution_);
+    own.value = value_of(quantity, dual.discretization(), discrete(), fields_.coupling, solution_);
     own.unmet = base_.unmet;
     try {
       enclose(quantity, dual, own);
@@ -198,11 +195,15 @@ class Encloser {
     const double r = size_ > 0 ? enclosure_.radius() / size_ : 0;
     dual.solve(fields_.clearance, std::numeric_limits<double>::infinity(), progress_);
     const double by_stress = ratio(norm_of(dual.stress(), discrete()), size_),
-                 by_displacement = ratio(dual.largest_displacement(),
-                                         std::max(solution_.displacement.lpNorm<Eigen::Infinity>(),
-                                                  fields_.clearance.lpNorm<Eigen::Infinity>())),
+                 largest = std::max(solution_.displacement.lpNorm<Eigen::Infinity>(),
+                                    fields_.clearance.lpNorm<Eigen::Infinity>()),
+                 by_displacement = ratio(dual.largest_displacement(), largest),
                  factor = best_factor(r, std::max(by_stress, r * by_displacement)),
-                 most = std::max(by_stress, by_displacement), size = most > 0 ? 1 / most : 1;
+                 most = std::max(by_stress, by_displacement);
+    // Beside a body at rest rounding leaves the less, the smaller the dual solution is taken.
+    constexpr double hardly = 1e-100;
+    const bool is_at_rest = size_ == 0 && largest == 0;
+    const double size = is_at_rest ? hardly : most > 0 ? 1 / most : 1;
     std::vector<std::string> unmet;
     QuantityEnclosure::Bounds found = bounds(dual, factor, size, unmet);
     if (found.factor < kMuchTooSmall * found.free_factor) {

@@ -221,6 +221,19 @@ TEST(Cancel, IsHeardWhileTheDataOfTheBoundAreEnclosed) {
     }
 }
 
+/// Found from outside: a body on rollers and contact alone, with a load that is not known to the last, looked
+/// at the area of its mesh once for each triangle.
+TEST(Cancel, IsHeardWhileUncertainLoadsAreCarried) {
+  Problem block = problems::pressed_block(Scheme::nonconforming, Pattern::alternating, 0.3, 1);
+  block.mesh.fineness = Divisions{160, 160};
+  block.body = VectorField(Field(0), problems::formula("x < 0.5 ? -3 : sin(9*y)"));
+  block.boundary = {{"left", Roller{}}, {"bottom", Contact{Field(0.01)}}, {"top", Pressure{Field(1)}}};
+  for (const double after : {0.8, 1., 1.2, 1.5}) {
+    SCOPED_TRACE(after);
+    expect_heard(solves(block, {ActiveSet{}, {}}), after);
+  }
+}
+
 /// The data of a triangle may take a tenth of a millisecond: so many triangles are within a quarter of a
 /// second.
 TEST(Cancel, IsHeardWithinAThousandTriangles) {

@@ -1,5 +1,6 @@
 // Intervals of quantities against exact values, against each other, and against much finer meshes.
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gmock/gmock.h>
@@ -253,6 +254,33 @@ TEST(QuantityOfAPatchTest, IsKnownToRounding) {
     EXPECT_LE(force.relative_width(), 1e-9) << force.lower << " " << force.upper;
     EXPECT_NEAR(force.value / force.estimate, 1, 1e-9);
   }
+}
+
+/// Found from outside: rounding was that of a solution of the size of the dual one.
+TEST(QuantityOfABodyAtRest, IsKnownExactly) {
+  for (const double scale : {1., 1e-9, 1e9}) {
+    Problem problem = problems::paper(Scheme::nonconforming, 4);
+    problem.material = MembraneStiffness::isotropic(Field(scale));
+    problem.body = Field(0);
+    problem.boundary = {{"top", Fixed{}}};
+    problem.quantities = {mean_on("right", Field(1))};
+    const EnclosedQuantity mean = enclosed(problem).at(0);
+    EXPECT_TRUE(mean.guaranteed);
+    EXPECT_EQ(mean.value, 0);
+    EXPECT_LE(mean.upper - mean.lower, 1e-90);
+  }
+}
+
+/// The nearer end where rounding alone takes the value out of the interval.
+TEST(EstimateWithin, IsTheValueButForRounding) {
+  EXPECT_EQ(estimate_within(0.3, 0, 1), 0.3);
+  EXPECT_EQ(estimate_within(-5e-18, 0, 0.43), 0);
+  EXPECT_EQ(estimate_within(1 + 1e-12, 0, 1), 1);
+  EXPECT_EQ(estimate_within(-0.1, 0, 1), 0.5);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(estimate_within(-0.1, 0, infinity), 0);
+  EXPECT_EQ(estimate_within(2, -infinity, 1), 1);
+  EXPECT_EQ(estimate_within(2, 1, infinity), 2);
 }
 
 /// The foundation alone deforms the body, so that F = 2 J(u) / δ.

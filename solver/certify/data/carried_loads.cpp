@@ -58,6 +58,7 @@ class Carrier {
   Carrier(const Discretization& discrete, const LawOnMesh& laws, const ContactPressure& pressure)
       : discrete_(discrete),
         mesh_(discrete.mesh),
+        extent_(std::sqrt(mesh_.area())),
         laws_(laws),
         pressure_(pressure),
         way_out_(mesh_.triangles.size(), -1),
@@ -139,11 +140,9 @@ class Carrier {
   /// The rigid motions of a body, in units of its size, along a direction; the deflection of a membrane.
   Eigen::VectorXd motions_along(const Point& x, const Vector& d) const {
     if (discrete_.spaces().components == 1) return Eigen::VectorXd::Constant(1, 1);
-    const Vector r = (x - mesh_.points[0]) / extent();
+    const Vector r = (x - mesh_.points[0]) / extent_;
     return Eigen::Vector3d(d.x(), d.y(), d.y() * r.x() - d.x() * r.y());
   }
-
-  double extent() const { return std::sqrt(mesh_.area()); }
 
   /// Lets the tractions on Γ_C and on rollers take the resultant: answers max |r·d|, more than 1 if they do
   /// not.
@@ -182,14 +181,14 @@ class Carrier {
     double resultant = 0;
     for (int t = 0; t < discrete_.triangles(); ++t) {
       const double distance = (mesh_.centroid(t) - mesh_.points[0]).norm() + size(t);
-      resultant += 2 * into[t].force + (into[t].moment + into[t].force * distance) / extent();
+      resultant += 2 * into[t].force + (into[t].moment + into[t].force * distance) / extent_;
     }
     if (!(least > 0)) return 2;
     const double of_motion = resultant / least;
     double change = 0;
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const double own = of_motion * (motions_along(middle(sides[i].edge), sides[i].direction).norm() +
-                                      mesh_.length(sides[i].edge) / extent());
+                                      mesh_.length(sides[i].edge) / extent_);
       if (i < contacts) change = std::max(change, own);
       act(sides[i].edge, {own * sides[i].force, own * sides[i].force * mesh_.length(sides[i].edge) / 2},
           into);
@@ -300,6 +299,7 @@ class Carrier {
 
   const Discretization& discrete_;
   const Mesh& mesh_;
+  const double extent_;  ///< the root of the area
   const LawOnMesh& laws_;
   const ContactPressure& pressure_;
   std::vector<int> way_out_;  ///< of each triangle the edge towards Γ_D
