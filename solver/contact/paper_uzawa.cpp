@@ -54,7 +54,6 @@ void UzawaIteration::eliminate(Factorization by, Progress& progress) {
   ElementSum matrix;
   matrix.size = discrete_.traces.free_unknowns();
   matrix.per_element = n;
-  matrix.sides = discrete_.mesh.triangle_edges;
   PerShape<Shape> shapes(discrete_);
   for (int t = 0; t < triangles; ++t) {
     progress.check_in(t);
@@ -71,6 +70,7 @@ void UzawaIteration::eliminate(Factorization by, Progress& progress) {
       stiffness_.insert(stiffness_.end(), shape.stiffness.data(), shape.stiffness.data() + n * n);
   }
   progress.enter(Phase::factorize);
+  matrix.tree = tree_by_edges(matrix.centres, discrete_.mesh.triangle_edges, progress);
   factor_ = std::make_unique<const Factor>(factorize(matrix, 0, by, progress));
 }
 

@@ -59,8 +59,9 @@ CondensedProblem::CondensedProblem(const Problem& problem, std::shared_ptr<const
     : reused_(false), discretization_(std::make_unique<Discretization>(problem, *mesh, &progress)) {
   const bool held = held_by_contact_alone(*discretization_);
   progress.enter(Phase::assemble);
-  const HybridSystem system = assemble(*discretization_, progress);
+  HybridSystem system = assemble(*discretization_, progress);
   progress.enter(Phase::factorize);
+  system.matrix.tree = tree_by_edges(system.matrix.centres, discretization_->mesh.triangle_edges, progress);
   operator_ = std::make_shared<const Operator>(std::move(mesh), discretization_->clearance, system.matrix,
                                                held, by, progress);
   condensed_ = std::make_unique<CondensedContact>(*operator_, system.right, progress);

@@ -132,9 +132,21 @@ void Estimation::cut(const Mesh& mesh, Shows shows) {
 /// Uniform refinements are made as long as they have no more triangles than these, and few.
 void Estimation::cut_finer(Mesh mesh, std::int64_t triangles, Shows shows) {
   const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
-  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) mesh = refine(mesh, 1);
+  Mesh before;
+  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) {
+    Mesh finer = refine(mesh, 1);
+    before = std::exchange(mesh, std::move(finer));
+  }
   may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
+  const bool is_known = static_cast<std::int64_t>(mesh.triangles.size()) >= triangles;
+  std::shared_ptr<const MeshPieces> coarser;
+  // Triangles that are made are not thin.
+  if (!is_known && !before.triangles.empty() && std::holds_alternative<MeshData>(problem_.domain)) {
+    cut(before, shows);
+    coarser = std::make_shared<const MeshPieces>(*std::move(pieces_));
+  }
   cut(mesh, shows);
+  pieces_->grow_as_from(std::move(coarser));
 }
 
 void Estimation::cut(const MeshData& data) {

@@ -127,6 +127,17 @@ void number_shapes(const std::vector<Point>& points, const std::vector<std::arra
     number_of[t] = shapes(map_of(triangles[t]).jacobian, [t] { return t; });
 }
 
+bool has_sides_along_axes(const std::array<int, 3>& triangle, const std::vector<Point>& points) {
+  constexpr double rounding = 1e-9;
+  std::array<bool, 2> along{};
+  for (int i = 0; i < 3; ++i) {
+    const Vector side = points[triangle[(i + 1) % 3]] - points[triangle[i]];
+    for (int axis = 0; axis < 2; ++axis)
+      along[axis] = along[axis] || std::abs(side[1 - axis]) <= rounding * std::abs(side[axis]);
+  }
+  return along[0] && along[1];
+}
+
 std::array<int, 2> ascending(const std::array<int, 2>& edge) {
   return {std::min(edge[0], edge[1]), std::max(edge[0], edge[1])};
 }
@@ -164,6 +175,8 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
   std::iota(sum.matrix_of.begin(), sum.matrix_of.end(), 0);
   if (alike) number_shapes(points, triangles, sum.matrix_of);
   for (int t = 0; t < static_cast<int>(triangles.size()); ++t) shapes_ += sum.matrix_of[t] == t ? 1 : 0;
+  constexpr double of_lattice = 2;
+  is_lattice_ = shapes_ <= of_lattice && !triangles.empty() && has_sides_along_axes(triangles[0], points);
   for (int& number : sum.matrix_of) number *= 8;
   std::vector<int> traces;
   std::vector<TriangleEdge> contact;
@@ -201,12 +214,12 @@ MeshPieces::MeshPieces(const std::vector<Point>& points, std::vector<std::array<
   }
   for (int i = 0; i < static_cast<int>(contact.size()); ++i)
     place(contact[i].triangle, contact_at + corner_opposite(contact[i])) = with_traces + with_rotation + i;
-  sum.sides = edges_of;
   sum.size = with_traces + with_rotation + static_cast<int>(contact.size());
   contact_edges_ = static_cast<double>(contact.size());
 
   Observer nobody;
   Progress progress(nobody, {});
+  sum.tree = tree_by_edges(sum.centres, edges_of, progress);
   const Dissection dissection(sum, static_cast<int>(contact.size()), progress);
   const RepeatedPieces like(dissection, sum, progress);
   std::vector<int> numbers(dissection.pieces(), 0);
@@ -250,6 +263,13 @@ double MeshPieces::shapes(double triangles) const {
   return std::min(triangles, (triangles > triangles_ ? 2 : 1) * shapes_);
 }
 
+/// By how many times more than it was foreseen of the coarser mesh the panels are of this one. Cuts along the
+/// axes are the longer, the finer a mesh is whose triangles are thin and lie askew.
+double MeshPieces::worsening(const Spaces& spaces, double contact_unknowns) const {
+  return factor_bytes(spaces, triangles_, contact_unknowns, false).panels /
+         coarser_->factor_bytes(spaces, triangles_, contact_unknowns, false).panels;
+}
+
 /// By how many times the edges of a leaf that is refined to so many triangles are more than those of squares,
 /// 3/2 of a triangle: where its own are, because many lie on the boundary. Each edge becomes two, and each
 /// triangle has three more inside.
@@ -273,10 +293,7 @@ FactorBytes MeshPieces::within(const Piece& leaf, const Spaces& spaces, double t
 
 FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, double contact_unknowns,
                                      bool repeated) const {
-  // A lattice of one shape, and the same turned round, is one again when it is refined. Of other meshes it is
-  // not known.
-  constexpr double of_lattice = 2;
-  repeated = repeated && (triangles <= triangles_ || shapes_ <= of_lattice);
+  repeated = repeated && (triangles <= triangles_ || is_lattice_);
   const double growth = std::sqrt(triangles / triangles_),
                leaves = static_cast<double>(pieces_.size() + 1) / 2;
   const double per_contact = contact_edges_ > 0 ? contact_unknowns / contact_edges_ : 0;
@@ -326,6 +343,11 @@ FactorBytes MeshPieces::factor_bytes(const Spaces& spaces, double triangles, dou
     all.panels = repeated ? std::min(of_alike * all.panels,
                                      factor_bytes(spaces, triangles, contact_unknowns, false).panels)
                           : of_others * all.panels;
+  if (growth > 1 && !repeated && coarser_) {
+    constexpr double once_more = 1.3;  // as measured of grids and rings of thin triangles
+    const double worse = once_more * std::max(1., worsening(spaces, contact_unknowns / growth));
+    all.panels *= worse, all.stacks *= worse;
+  }
   return all;
 }
 

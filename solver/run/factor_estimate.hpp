@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,9 @@ class MeshPieces {
              const std::vector<std::pair<const Condition*, const Edges*>>& boundary, int components,
              bool alike);
 
+  /// Takes from the same mesh before a uniform refinement how its factor grows by one.
+  void grow_as_from(std::shared_ptr<const MeshPieces> coarser) { coarser_ = std::move(coarser); }
+
   bool empty() const { return pieces_.empty(); }
   double triangles() const { return triangles_; }  ///< of the mesh that was cut
 
@@ -70,11 +74,16 @@ class MeshPieces {
     Vector extent;              ///< of a leaf,
     double across;              ///< and by how many times more triangles lie along x than along y
   };
+  double worsening(const Spaces& spaces, double contact_unknowns) const;
   double fullness(const Piece& leaf, const Spaces& spaces, double triangles) const;
   FactorBytes within(const Piece& leaf, const Spaces& spaces, double triangles, double contact) const;
 
   double triangles_, shapes_ = 0, boundary_edges_ = 0, contact_edges_ = 0;
+  /// Of one shape, and the same turned round, with two sides along the axes, so that its pieces are alike: it
+  /// is one again when it is refined. Of other meshes it is not known.
+  bool is_lattice_ = false;
   std::vector<Piece> pieces_;  ///< the halves before the whole
+  std::shared_ptr<const MeshPieces> coarser_;
 };
 
 }  // namespace signorini

@@ -169,9 +169,11 @@ double relaxation(double own_shapes) {
 /// function, of which its minimum under conditions makes copies. As measured of thin bodies, whose triangles
 /// all take part. A membrane of the higher order has its patches instead.
 double minimization(const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double of_body = 37e3, of_body_lower = 3e3, of_membrane_lower = 10e3, triangles_at_contact = 16;
-  const double of_contact = spaces.components == 1 ? (spaces.order == 0 ? of_membrane_lower : 0)
-                                                   : (spaces.order == 0 ? of_body_lower : of_body);
+  constexpr double of_body = 48e3, of_body_lower = 3e3, of_membrane_lower = 10e3;
+  const bool is_membrane = spaces.components == 1;
+  const double of_contact = is_membrane ? (spaces.order == 0 ? of_membrane_lower : 0)
+                                        : (spaces.order == 0 ? of_body_lower : of_body);
+  const double triangles_at_contact = is_membrane ? 8 : 16;
   return of_contact * std::min(sizes.contact, sizes.triangles / triangles_at_contact);
 }
 

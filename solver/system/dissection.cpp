@@ -16,7 +16,9 @@ int piece_around(int a, int b) {
 }  // namespace
 
 Dissection::Dissection(const ElementSum& sum, int trailing, Progress& progress)
-    : tree_(sum.tree ? sum.tree : std::make_shared<const ElementTree>(sum, progress)),
+    : tree_(sum.tree ? sum.tree
+                     : std::make_shared<const ElementTree>(
+                           sum.centres, SharedNumbers{sum.unknowns, sum.per_element, sum.size}, progress)),
       places_(tree_->pieces()) {
   place_unknowns(sum, trailing);
   for_each_piece([&](int piece) {

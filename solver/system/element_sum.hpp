@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,10 +21,7 @@ struct ElementSum {
   /// twice the memory.
   std::vector<std::vector<double>> blocks;
   std::vector<Point> centres;  ///< where the elements lie
-  /// The numbers of each triangle's edges, where the elements are those of a mesh, which has them as long as
-  /// this is at work. They are cut into pieces by what edges they share; others by what unknowns.
-  std::span<const std::array<int, 3>> sides;
-  /// How they are cut into pieces, if another sum on the mesh was dissected before.
+  /// How they are cut into pieces, if that is known: by their edges, or as another sum on the mesh was.
   std::shared_ptr<const ElementTree> tree;
 
   int elements() const { return static_cast<int>(matrix_of.size()); }

@@ -4,14 +4,13 @@
 #include <bit>
 #include <cmath>
 
-#include "system/element_sum.hpp"
 #include "system/short_cut.hpp"
 
 namespace signorini {
 namespace {
 
 /// Elements of a leaf, at least: fewer make the factor sparser, more make its blocks denser.
-constexpr int kLeaf = 8;
+constexpr std::size_t kLeaf = 8;
 
 /// Of the way from one half to the other: what differs by less differs by rounding.
 constexpr double kRounding = 1e-9;
@@ -29,8 +28,8 @@ bool is_moved(std::span<const Centre> first, std::span<const Centre> second) {
 /// Sorts the elements leaf by leaf.
 class Halving {
  public:
-  Halving(const ElementSum& sum, int leaves, Progress& progress)
-      : progress_(progress), halves_(sum, leaves), place_(sum.matrix_of.size()) {}
+  Halving(const SharedNumbers& shared, int elements, int leaves, Progress& progress)
+      : progress_(progress), halves_(shared, elements, leaves), place_(elements) {}
 
   void operator()(std::span<Centre> elements, int leaves) {
     if (leaves == 1) {
@@ -75,16 +74,24 @@ class Halving {
 
 }  // namespace
 
-ElementTree::ElementTree(const ElementSum& sum, Progress& progress)
-    : leaves_(static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(1, sum.elements() / kLeaf))))) {
-  std::vector<Centre> centres = centres_of(sum);
-  Halving halve(sum, leaves_, progress);
-  halve(centres, leaves_);
-  elements_.reserve(centres.size());
-  for (const Centre& centre : centres) elements_.push_back(centre.element);
+ElementTree::ElementTree(const std::vector<Point>& centres, const SharedNumbers& shared, Progress& progress)
+    : leaves_(static_cast<int>(std::bit_floor(std::max<std::size_t>(1, centres.size() / kLeaf)))) {
+  std::vector<Centre> sorted = tilted(centres);
+  Halving halve(shared, static_cast<int>(centres.size()), leaves_, progress);
+  halve(sorted, leaves_);
+  elements_.reserve(sorted.size());
+  for (const Centre& centre : sorted) elements_.push_back(centre.element);
   first_element_.reserve(static_cast<std::size_t>(leaves_) + 1);
   first_element_.push_back(0);
   for (const std::size_t count : halve.of_leaf()) first_element_.push_back(first_element_.back() + count);
+}
+
+std::shared_ptr<const ElementTree> tree_by_edges(const std::vector<Point>& centres,
+                                                 std::span<const std::array<int, 3>> edges_of_triangles,
+                                                 Progress& progress) {
+  const std::span<const int> all(edges_of_triangles.front().data(), 3 * edges_of_triangles.size());
+  return std::make_shared<const ElementTree>(
+      centres, SharedNumbers{all, 3, *std::ranges::max_element(all) + 1}, progress);
 }
 
 }  // namespace signorini

@@ -93,7 +93,6 @@ HybridSystem assemble(const Discretization& discrete, Progress& progress) {
   sum.unknowns.reserve(triangles * static_cast<std::size_t>(sum.per_element));
   sum.matrix_of.reserve(triangles);
   sum.centres.reserve(triangles);
-  sum.sides = discrete.mesh.triangle_edges;
   system.right = discrete.coupling_load;
   PerShape<NumberedShape> shapes(discrete);
   for (int t = 0; t < discrete.triangles(); ++t) {

@@ -49,39 +49,31 @@ double gap_before(std::span<const Centre> piece, std::size_t cut, int along) {
 
 }  // namespace
 
-std::vector<Centre> centres_of(const ElementSum& sum) {
+std::vector<Centre> tilted(const std::vector<Point>& centres) {
   Eigen::AlignedBox2d box;
-  for (const Point& centre : sum.centres) box.extend(centre);
+  for (const Point& centre : centres) box.extend(centre);
   const Eigen::Vector2d sizes = box.sizes();
   // Across columns of squares x varies by much more, even if there are a million.
   constexpr double tilt = 1e-8;
   const double of_x = sizes.y() > 0 ? tilt * sizes.x() / sizes.y() : 0,
                of_y = sizes.x() > 0 ? tilt * sizes.y() / sizes.x() : 0;
-  std::vector<Centre> centres;
-  centres.reserve(sum.centres.size());
-  for (int e = 0; e < sum.elements(); ++e) {
-    const Point own = sum.centres[e] - box.min();
-    centres.push_back({{own.x() + of_x * own.y(), own.y() + of_y * own.x()}, e});
+  std::vector<Centre> tilted;
+  tilted.reserve(centres.size());
+  for (int e = 0; e < static_cast<int>(centres.size()); ++e) {
+    const Point own = centres[e] - box.min();
+    tilted.push_back({{own.x() + of_x * own.y(), own.y() + of_y * own.x()}, e});
   }
-  return centres;
+  return tilted;
 }
 
-SharedNumbers::SharedNumbers(const ElementSum& sum)
-    : all(sum.unknowns), per_element(sum.per_element), size(sum.size) {
-  if (sum.sides.empty()) return;
-  per_element = 3;
-  all = {sum.sides.front().data(), sum.sides.size() * 3};
-  size = *std::ranges::max_element(all) + 1;
-}
-
-ShortCut::ShortCut(const ElementSum& sum, int leaves)
-    : numbers_(sum),
-      elements_per_leaf_(static_cast<double>(sum.elements()) / leaves),
-      per_side_(static_cast<double>(std::ranges::count_if(numbers_.all, [](int i) { return i >= 0; })) /
-                (3. * sum.elements())),
-      seen_as_(numbers_.size, 0),
-      first_(numbers_.size),
-      last_(numbers_.size) {}
+ShortCut::ShortCut(const SharedNumbers& numbers, int elements, int leaves)
+    : numbers_(numbers),
+      elements_per_leaf_(static_cast<double>(elements) / leaves),
+      per_side_(static_cast<double>(std::ranges::count_if(numbers.all, [](int i) { return i >= 0; })) /
+                (3. * elements)),
+      seen_as_(numbers.size, 0),
+      first_(numbers.size),
+      last_(numbers.size) {}
 
 std::size_t ShortCut::operator()(std::span<Centre> piece, int leaves) {
   const Eigen::AlignedBox2d box = box_of(piece);

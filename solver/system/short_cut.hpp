@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "system/element_sum.hpp"
+#include "system/element_tree.hpp"
 
 namespace signorini {
 
@@ -18,22 +18,10 @@ struct Centre {
   int element;
 };
 
-std::vector<Centre> centres_of(const ElementSum& sum);
+std::vector<Centre> tilted(const std::vector<Point>& centres);
 
-/// What elements share, by its numbers below `size`: so many an element, -1 for none.
-struct SharedNumbers {
-  explicit SharedNumbers(const ElementSum& sum);
-
-  std::span<const int> of(int element) const {
-    return all.subspan(static_cast<std::size_t>(element) * per_element, per_element);
-  }
-
-  std::span<const int> all;
-  int per_element, size;
-};
-
-/// Cuts pieces of a mesh in two, across x or y, so that the halves share few edges, or unknowns where nothing
-/// is known of edges (ElementSum::sides).
+/// Cuts pieces of a mesh in two, across x or y, so that the halves share few numbers: of edges, or of
+/// unknowns where there are none.
 ///
 /// That is in the widest gap near the median of the longer extent, between squares if there are any, where it
 /// is as short as a cut between squares would be. Arms and long triangles make it longer: then it is the cut
@@ -46,7 +34,7 @@ class ShortCut {
   /// Fewer elements are cut near the median: what is looked for elsewhere costs more than it saves.
   static constexpr std::size_t kFew = 128;
 
-  ShortCut(const ElementSum& sum, int leaves);
+  ShortCut(const SharedNumbers& numbers, int elements, int leaves);
 
   /// Sorts the elements of a piece, which is to have so many leaves, so that those of a half are neighbours,
   /// and says how many the first half has.

@@ -91,7 +91,7 @@ TEST(ElementTree, CutsHalvesThatAreAlikeInTheSameWay) {
   Observer indifferent;
   Progress progress(indifferent, {});
   const ElementSum sum = squares(64, 32, everywhere);
-  const ElementTree tree(sum, progress);
+  const ElementTree tree(sum.centres, {sum.unknowns, sum.per_element, sum.size}, progress);
   for (int leaf = 0; leaf < tree.leaves() / 2; ++leaf) {
     const auto first = tree.elements(tree.leaves() + leaf),
                second = tree.elements(tree.leaves() + tree.leaves() / 2 + leaf);

@@ -491,6 +491,30 @@ TEST_P(Memory, OfRefinedImportsIsThatOfTheirPieces) {
   }
 }
 
+/// Found from outside: lattices that lie askew were held for alike when they are refined, and cuts along the
+/// axes grow faster there.
+TEST_P(Memory, OfRefinedImportsThatLieAskew) {
+  for (const auto& [stretch, turn] : {std::pair(30., 0.3), std::pair(100., 0.6)}) {
+    SCOPED_TRACE(turn);
+    Problem problem = membrane(GetParam(), 1, 1);
+    problem.domain = imported(1, 1, [stretch = stretch, turn = turn](double x, double y) {
+      return Point(std::cos(turn) * stretch * x - std::sin(turn) * y,
+                   std::sin(turn) * stretch * x + std::cos(turn) * y);
+    });
+    problem.mesh.refine = 7;
+    expect_no_more(problem);
+  }
+}
+
+/// Found from outside: crossed squares have more triangles at the contact.
+TEST_P(Memory, OfLongCrossedStrips) {
+  Problem strip = elastic(GetParam(), 800, 6);
+  std::get<Rectangle>(strip.domain) = {{0, 0}, {800. / 6, 1}};
+  strip.mesh.pattern = Pattern::crossed;
+  strip.boundary = {{"top", Fixed{}}, {"bottom", Contact{Field(0.01)}}};
+  expect_bound(strip);
+}
+
 /// Draws what is hard to foresee: meshes that are not cut as squares are, loads that jump, and gaps where a
 /// mesh refines itself all along.
 class Drawn {

@@ -87,6 +87,8 @@ Extensions::Extensions(const Discretization& discrete, const LawOnMesh& laws, Fa
     add_elements<1>(laws);
   else
     add_elements<2>(laws);
+  if (!stiffness_.tree)
+    stiffness_.tree = tree_by_edges(stiffness_.centres, discrete.mesh.triangle_edges, progress);
   if (stiffness_.size > 0) factor_.emplace(factorize(stiffness_, 0, by, progress));
 }
 
@@ -148,7 +150,6 @@ void Extensions::add_elements(const LawOnMesh& laws) {
   for (int& unknown : unknowns_)
     if (unknown == 0) unknown = stiffness_.size++;
   stiffness_.per_element = 3 * D;
-  stiffness_.sides = discrete_.mesh.triangle_edges;
   const auto triangles = static_cast<std::size_t>(discrete_.triangles());
   stiffness_.unknowns.reserve(3 * D * triangles);
   stiffness_.matrix_of.reserve(triangles);
