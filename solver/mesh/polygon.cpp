@@ -396,7 +396,7 @@ Mesh polygon_mesh(const Polygon& polygon, double size, const std::vector<LocalSi
                   Progress* progress) {
   throw_if_any(validate(polygon));
   throw_if_any(validate(polygon, size, sizes, max_triangles));
-  Rings rings = followed_rings(polygon, size);
+  Rings rings = resolved_rings(followed_rings(polygon, size));
   const UnitFrame frame(rings.points);
   const SizeField field(size, sizes, frame);
   rings = halved_to_size(std::move(rings), field, frame, max_triangles);

@@ -230,7 +230,7 @@ std::vector<Fault> faults_of_shape(const Rings& given) {
 std::vector<Fault> validate(const Polygon& polygon) {
   std::vector<Fault> faults = faults_of_vertices(polygon);
   if (faults.empty()) faults = faults_of_arcs(polygon);
-  if (faults.empty()) faults = faults_of_shape(resolved_rings(polygon));
+  if (faults.empty()) faults = faults_of_shape(resolved_rings(Rings(polygon)));
   const std::vector<Fault> of_sides = faults_of_sides(polygon);
   faults.insert(faults.end(), of_sides.begin(), of_sides.end());
   return faults;

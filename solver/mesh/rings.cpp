@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mesh/arc.hpp"
 #include "mesh/meeting_boxes.hpp"
@@ -189,9 +190,10 @@ Rings with_chords_halved(Rings rings, double closeness, int most_rounds, std::si
 
 }  // namespace
 
-Rings resolved_rings(const Polygon& polygon) {
+Rings resolved_rings(Rings rings) {
+  const std::size_t most_points = std::max<std::size_t>(15'000, 2 * rings.points.size());
   // Each round brings a chord four times closer to its arc.
-  return with_chords_halved(Rings(polygon), 0, 8, 15'000);
+  return with_chords_halved(std::move(rings), 0, 8, most_points);
 }
 
 Rings followed_rings(const Polygon& polygon, double longest_chord, std::size_t most_points) {

@@ -66,13 +66,13 @@ PolygonParts parts_of(const Polygon& polygon);
 /// The area of the domain: that inside the outer ring less that of the holes, whichever way they run.
 double domain_area(const Rings& rings);
 
-/// The rings of a polygon with so many chords that no two edges of which one is a chord cross, if the arcs
+/// The same rings with so many chords more that no two edges of which one is a chord cross, if the arcs
 /// themselves do not.
-Rings resolved_rings(const Polygon& polygon);
+Rings resolved_rings(Rings rings);
 
-/// The same with so many that the domain is about as narrow between them as between the arcs: none is farther
-/// from its arc than half of its distance from the nearest other edge, or longer than `longest_chord`. With
-/// about `most_points` they are as they are.
+/// Those of a polygon with so many that the domain is about as narrow between them as between the arcs: none
+/// is farther from its arc than half of its distance from the nearest other edge, or longer than
+/// `longest_chord`. With about `most_points` they are as they are.
 Rings followed_rings(const Polygon& polygon, double longest_chord = std::numeric_limits<double>::infinity(),
                      std::size_t most_points = 15'000);
 

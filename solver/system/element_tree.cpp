@@ -89,9 +89,12 @@ ElementTree::ElementTree(const std::vector<Point>& centres, const SharedNumbers&
 std::shared_ptr<const ElementTree> tree_by_edges(const std::vector<Point>& centres,
                                                  std::span<const std::array<int, 3>> edges_of_triangles,
                                                  Progress& progress) {
-  const std::span<const int> all(edges_of_triangles.front().data(), 3 * edges_of_triangles.size());
-  return std::make_shared<const ElementTree>(
-      centres, SharedNumbers{all, 3, *std::ranges::max_element(all) + 1}, progress);
+  SharedNumbers edges{{}, 3, 0};
+  if (!edges_of_triangles.empty()) {
+    edges.all = {edges_of_triangles.front().data(), 3 * edges_of_triangles.size()};
+    edges.size = *std::ranges::max_element(edges.all) + 1;
+  }
+  return std::make_shared<const ElementTree>(centres, edges, progress);
 }
 
 }  // namespace signorini
