@@ -5,12 +5,14 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 
 #include "mesh/meeting_boxes.hpp"
+#include "mesh/segments.hpp"
 
 namespace signorini {
 namespace {
@@ -43,17 +45,16 @@ class Inside {
 
   /// From a point of the rings straight to another.
   bool operator()(int from, int to) const {
-    const Point& at = rings_.points[from];
-    Vector first = rings_.points[rings_.next(from)] - at, last = rings_.points[rings_.before(from)] - at;
+    int first = rings_.next(from), last = rings_.before(from);
     if (!on_the_left_[rings_.ring[from]]) std::swap(first, last);
-    const Vector way = rings_.points[to] - at;
-    return cross(first, last) > 0 ? cross(first, way) > 0 && cross(way, last) > 0
-                                  : cross(last, way) < 0 || cross(way, first) < 0;
+    const auto turn = [&](int one, int other) {
+      return twice_area(rings_.points[from], rings_.points[one], rings_.points[other]);
+    };
+    return turn(first, last) > 0 ? turn(first, to) > 0 && turn(to, last) > 0
+                                 : turn(last, to) < 0 || turn(to, first) < 0;
   }
 
  private:
-  static double cross(const Vector& a, const Vector& b) { return a.x() * b.y() - a.y() * b.x(); }
-
   const Rings& rings_;
   std::vector<bool> on_the_left_;  ///< of the edges of each ring
 };

@@ -100,7 +100,7 @@ struct Pieces {
     return length < 0.9 ? 1.25 : 1.5;
   }
 
-  static constexpr double kGrowing = 4;
+  static constexpr double kGrowing = 4;  ///< widths, that the middle of a part speaks for: narrow_places.cpp
 
   double count, length;
   double growing = 0;  ///< more of them, from the narrow ends
@@ -164,14 +164,14 @@ struct Tip {
 /// the length of the shorter one; their triangles are counted with the cluster of its ends.
 struct Step {
   int longer;
-  std::array<double, 2> lengths;  ///< of the shorter edge and of the longer one
+  double shorter, length;  ///< of the shorter edge, and of the longer one
 
   static constexpr double kSharp = -0.5;  ///< cosine of the angle in the domain
 
   /// As measured; the first is there anyway.
   double edges(double size) const {
     constexpr double by_doubling = 1.2;
-    return std::max(0., by_doubling * std::log2(std::min(lengths[1], size) / lengths[0]) - 1);
+    return std::max(0., by_doubling * std::log2(std::min(length, size) / shorter) - 1);
   }
 };
 
@@ -232,8 +232,7 @@ class PredictedSizes::OfPolygon {
     }
     for (int ring = 0; ring < rings_.size(); ++ring)
       turns_.push_back(rings_.has_domain_on_the_left(ring) ? 1 : -1);
-    find_tips();
-    find_steps();
+    find_corners();
     find_floors();
     clusters_ = clusters(rings_);
   }
@@ -297,28 +296,19 @@ class PredictedSizes::OfPolygon {
  private:
   static double by_area(double area, double edge) { return kTrianglesByArea * area / (edge * edge); }
 
-  void find_tips() {
+  /// The sharp ones, and those between edges of unlike lengths.
+  void find_corners() {
     for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
       const int behind = rings_.next(e);
       const auto [from, at] = rings_.edge(e);
       const Point& to = rings_.points[rings_.next(behind)];
       const double own = (from - at).norm(), other = (to - at).norm();
-      const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other);
-      if (sine > 0 && sine < Tip::kBlunt && (from - at).dot(to - at) > 0)
+      const double sine = turns_[rings_.ring[e]] * twice_area(at, to, from) / (own * other),
+                   way_back = (from - at).dot(to - at);
+      if (sine > 0 && sine < Tip::kBlunt && way_back > 0)
         tips_.push_back({at, {e, behind}, 0.5 * std::min(own, other), sine});
-    }
-  }
-
-  void find_steps() {
-    for (int e = 0; e < static_cast<int>(rings_.points.size()); ++e) {
-      const int behind = rings_.next(e);
-      const Point &at = rings_.points[behind], &to = rings_.points[rings_.next(behind)];
-      const Vector back = rings_.points[e] - at, on = to - at;
-      const double own = back.norm(), other = on.norm();
-      const bool is_convex = turns_[rings_.ring[e]] * twice_area(at, to, rings_.points[e]) > 0;
-      if (is_convex && back.dot(on) > Step::kSharp * own * other) continue;
-      const auto [shorter, longer] = std::minmax(own, other);
-      steps_.push_back({own > other ? e : behind, {shorter, longer}});
+      if (sine <= 0 || way_back <= Step::kSharp * own * other)
+        steps_.push_back({own > other ? e : behind, std::min(own, other), std::max(own, other)});
     }
   }
 

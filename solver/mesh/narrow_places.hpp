@@ -20,7 +20,7 @@ struct NarrowPlaces {
     double length, width;  ///< of each part; infinitely wide if nothing is closer than the edge is long
     double least;          ///< the width at its narrower end
     int parts;
-    bool is_mirrored;  ///< an edge across has its ends across from those of this one
+    bool is_mirrored;  ///< the edge across is the other side of a rectangle
   };
 
   double triangles = 0;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include "fem/clearance_space.hpp"
 #include "fem/stability.hpp"
@@ -133,10 +135,8 @@ void Estimation::cut(const Mesh& mesh, Shows shows) {
 void Estimation::cut_finer(Mesh mesh, std::int64_t triangles, Shows shows) {
   const std::int64_t most = std::min({triangles, most_cut, may_be_cut_});
   Mesh before;
-  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most) {
-    Mesh finer = refine(mesh, 1);
-    before = std::exchange(mesh, std::move(finer));
-  }
+  while (4 * static_cast<std::int64_t>(mesh.triangles.size()) <= most)
+    before = std::exchange(mesh, refine(mesh, 1));
   may_be_cut_ -= static_cast<std::int64_t>(mesh.triangles.size());
   const bool is_known = static_cast<std::int64_t>(mesh.triangles.size()) >= triangles;
   std::shared_ptr<const MeshPieces> coarser;

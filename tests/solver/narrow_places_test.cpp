@@ -7,6 +7,7 @@
 #include <chrono>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "mesh/clusters.hpp"
 #include "mesh/domain_mesh.hpp"
@@ -121,12 +122,15 @@ Polygon toothed(int teeth, double height, double foot, double flank) {
   return polygon;
 }
 
+/// What is foreseen of a mesh, and what it has.
+std::pair<MeshSizes, MeshSizes> foreseen_and_made(const Domain& domain, double size) {
+  const MeshRequest request(LargestEdge{size});
+  return {PredictedSizes(domain)(request), sizes_of(make_domain_mesh(domain, request))};
+}
+
 /// A mesh has no more triangles and edges of its boundary than so many times those that are foreseen.
 void expect_no_more(const Polygon& polygon, double size, double triangles, double edges) {
-  const Domain domain = polygon;
-  const MeshRequest request(LargestEdge{size});
-  const MeshSizes foreseen = PredictedSizes(domain)(request),
-                  made = sizes_of(make_domain_mesh(domain, request));
+  const auto [foreseen, made] = foreseen_and_made(polygon, size);
   EXPECT_GE(triangles * static_cast<double>(foreseen.triangles), static_cast<double>(made.triangles));
   EXPECT_GE(edges * static_cast<double>(foreseen.edges_of_parts()),
             static_cast<double>(made.edges_of_parts()));
@@ -263,10 +267,7 @@ TEST(NarrowPlaces, OfAllKindsAreForeseen) {
         {{{0, 0}, {1, 0}, {1, 1}, {0.501, 1}, {0.501, e}, {0.5, e}, {0.5, 1}, {0, 1}}, {}, {}},
         slit(e)};
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const Polygon& polygon = polygons[i];
-      const MeshRequest request(LargestEdge{3});
-      const MeshSizes foreseen = PredictedSizes(polygon)(request),
-                      made = sizes_of(make_domain_mesh(polygon, request));
+      const auto [foreseen, made] = foreseen_and_made(polygons[i], 3);
       EXPECT_LE(made.triangles, foreseen.triangles + 10) << i << " " << e;
       EXPECT_GE(12 * made.triangles + 100, foreseen.triangles) << i << " " << e;
       EXPECT_LE(5 * made.edges_of_parts(), 6 * foreseen.edges_of_parts() + 50) << i << " " << e;

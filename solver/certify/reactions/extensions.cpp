@@ -87,9 +87,10 @@ Extensions::Extensions(const Discretization& discrete, const LawOnMesh& laws, Fa
     add_elements<1>(laws);
   else
     add_elements<2>(laws);
+  if (stiffness_.size == 0) return;
   if (!stiffness_.tree)
     stiffness_.tree = tree_by_edges(stiffness_.centres, discrete.mesh.triangle_edges, progress);
-  if (stiffness_.size > 0) factor_.emplace(factorize(stiffness_, 0, by, progress));
+  factor_.emplace(factorize(stiffness_, 0, by, progress));
 }
 
 void Extensions::hold_parts() {
