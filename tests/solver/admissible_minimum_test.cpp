@@ -26,7 +26,7 @@ struct Bowl {
 
   Eigen::VectorXd minimum(const std::vector<MovingPressure>& moving,
                           const std::vector<LinearForm>& conditions = {}) {
-    return admissible_minimum(curvature, slope, moving, conditions, progress);
+    return admissible_minimum(Eigen::SparseMatrix<double>(curvature), slope, moving, conditions, progress);
   }
   /// With x_k given.
   Eigen::Vector4d minimum_with(int k, double x) const {

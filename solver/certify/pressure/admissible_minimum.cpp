@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/SparseCholesky>
+#include "fem/sparse_ldlt.hpp"
 
 namespace signorini {
 namespace {
@@ -26,16 +26,20 @@ double value(const LinearForm& form, const Eigen::VectorXd& x) {
 /// The way from x to the minimum of ½ x·curvature x + slope·x where the unknowns are what the free ones make
 /// of them; nothing where it has none.
 std::optional<Eigen::VectorXd> way_to_minimum(const Sparse& curvature, const Eigen::VectorXd& slope,
-                                              const Eigen::VectorXd& x, const FreeUnknowns& free) {
+                                              const Eigen::VectorXd& x, const FreeUnknowns& free,
+                                              Progress& progress) {
   const Sparse basis = free.basis(static_cast<int>(x.size()));
   if (basis.cols() == 0) return std::nullopt;
   Sparse matrix = Sparse(basis.transpose() * curvature * basis).triangularView<Eigen::Lower>();
   matrix.diagonal() *= 1 + kRegular;
-  const Eigen::SimplicialLDLT<Sparse> factor(matrix);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  Eigen::VectorXd way = basis * -factor.solve(basis.transpose() * (slope + curvature * x));
-  if (!way.allFinite()) return std::nullopt;
-  return way;
+  try {
+    const SparseLdlt factor(matrix, progress);
+    Eigen::VectorXd way = basis * -factor.solve(basis.transpose() * (slope + curvature * x), progress);
+    if (!way.allFinite()) return std::nullopt;
+    return way;
+  } catch (const SingularPivot&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -59,7 +63,7 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
           MovingPressure{i, 1, second, std::move(changes[1]), rooms[1], is_kept}};
 }
 
-Eigen::VectorXd admissible_minimum(Sparse curvature, Eigen::VectorXd slope,
+Eigen::VectorXd admissible_minimum(Sparse&& curvature, Eigen::VectorXd slope,
                                    std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
                                    Progress& progress) {
   // The unknowns may have units of their own.
@@ -82,7 +86,7 @@ Eigen::VectorXd admissible_minimum(Sparse curvature, Eigen::VectorXd slope,
   Eigen::VectorXd x = Eigen::VectorXd::Zero(slope.size());
   for (int step = 0; step < kSteps; ++step) {
     progress.check();
-    const std::optional<Eigen::VectorXd> change = way_to_minimum(curvature, slope, x, free);
+    const std::optional<Eigen::VectorXd> change = way_to_minimum(curvature, slope, x, free, progress);
     if (!change) break;
     double way = 1;
     for (const MovingPressure& own : moving)

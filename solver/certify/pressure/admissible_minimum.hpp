@@ -34,8 +34,8 @@ std::array<MovingPressure, 2> moving_pressures(const Discretization& discrete,
 /// The x that minimises ½ x·curvature x + slope·x + <p*, g − v_n> with row·x = 0 for the conditions, as far
 /// as p* ≥ 0 allows, where p* starts with its values. A primal active set: it goes towards the minimum until
 /// a pressure vanishes, keeps that, and goes on. p* ≥ 0 holds after every step, so that the last one may end
-/// anywhere.
-Eigen::VectorXd admissible_minimum(Eigen::SparseMatrix<double> curvature, Eigen::VectorXd slope,
+/// anywhere. The curvature is used up: sparse matrices of Eigen 3.4 are copied where they should be moved.
+Eigen::VectorXd admissible_minimum(Eigen::SparseMatrix<double>&& curvature, Eigen::VectorXd slope,
                                    std::vector<MovingPressure> moving, std::vector<LinearForm> conditions,
                                    Progress& progress);
 
