@@ -13,11 +13,11 @@ int ElementSum::keep(const double* values) {
 }
 
 int ElementSum::keep(const double* values, std::vector<int>& known) {
-  const auto as_vector = [this](const double* first) {
-    return Eigen::Map<const Eigen::VectorXd>(first, static_cast<Eigen::Index>(numbers()));
+  const auto as_matrix = [this](const double* first) {
+    return Eigen::Map<const Eigen::MatrixXd>(first, per_element, per_element);
   };
   return number_of_alike(
-      as_vector(values), known, [&](int own) { return as_vector(kept(own)); }, [&] { return keep(values); });
+      as_matrix(values), known, [&](int own) { return as_matrix(kept(own)); }, [&] { return keep(values); });
 }
 
 std::vector<double> ElementSum::diagonal() const {

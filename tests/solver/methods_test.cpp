@@ -359,6 +359,40 @@ TEST(Units, ChangeNeitherCountsNorTheActiveSet) {
   }
 }
 
+/// A block whose lower right corner lies on contact by two of its sides, with lengths × a: displacements are
+/// × a where the load is × 1 / a.
+Problem cornered(Scheme scheme, Pattern pattern, Divisions squares, double a) {
+  Problem problem;
+  problem.domain = Rectangle{{0, 0}, {2 * a, 0.8 * a}};
+  problem.mesh = {squares, pattern};
+  problem.scheme = scheme;
+  problem.material = YoungPoisson{Field(1), Field(0.3), Plane::strain};
+  problem.body = VectorField(-0.003 / a, -0.01 / a);
+  problem.boundary = {
+      {"left", Fixed{}}, {"bottom", Contact{Field(0.001 * a)}}, {"right", Contact{Field(0.01 * a)}}};
+  return problem;
+}
+
+/// Found from outside: matrices of triangles on both sides of a corner were taken for one another at lengths
+/// from 1e8 on, where the entries of turns are 1e16 times those of displacements.
+TEST(Units, OfABodyWithTwoContactsAtACornerChangeNothing) {
+  for (const Scheme scheme : {Scheme::conforming, Scheme::nonconforming})
+    for (const Pattern pattern : {Pattern::right, Pattern::left, Pattern::alternating, Pattern::crossed})
+      for (const Divisions squares : {Divisions{2, 2}, Divisions{3, 3}, Divisions{8, 5}}) {
+        const Solution reference = solve(cornered(scheme, pattern, squares, 1), {ActiveSet{}, {}});
+        ASSERT_EQ(reference.summary.outcome, Outcome::converged);
+        for (const double a : {1e-10, 1e-9, 1e8, 1e9, 1e10}) {
+          const Solution solution = solve(cornered(scheme, pattern, squares, a), {ActiveSet{}, {}});
+          EXPECT_EQ(solution.summary.outcome, Outcome::converged) << a;
+          EXPECT_EQ(solution.summary.iterations, reference.summary.iterations) << a;
+          EXPECT_LT(relative_difference(solution.stress / a, reference.stress), 1e-8) << a;
+          EXPECT_NEAR(solution.summary.error_bound->relative / reference.summary.error_bound->relative, 1,
+                      1e-4)
+              << a;
+        }
+      }
+}
+
 TEST(Units, PaperFormScalesWithItsParameters) {
   const Solution reference = solve(scaled(1, 1, 1), {PaperUzawa{0.05, 1, 0.3, 1e-5, 1000}, {}});
   // With lengths fixed, ρ and r scale like 1 / modulus.
