@@ -22,8 +22,8 @@ Discretization::Discretization(const Problem& posed, const Mesh& given, LoadProj
       clearance(make_clearance_space(posed, mesh, std::numeric_limits<double>::infinity(), of)),
       traces(posed, mesh, clearance),
       coupling_load(Eigen::VectorXd::Zero(traces.unknowns())) {
-  take_up_body_load();
-  take_up_traction();
+  take_up_body_load(progress);
+  take_up_traction(progress);
 }
 
 void Discretization::draw_near(double reach) {
@@ -33,9 +33,10 @@ void Discretization::draw_near(double reach) {
 
 /// Half of a couple acts on the rotation at each end of an edge, a third at each corner of a triangle: γ is
 /// linear, and the rotation of the displacement is −γ.
-void Discretization::take_up_body_load() {
+void Discretization::take_up_body_load(Progress* progress) {
   if (spaces().leaves_couples()) couples.resize(triangles());
   for (int t = 0; t < triangles(); ++t) {
+    if (progress) progress->check_in(t);
     const TriangleLoad own = element.load(mesh, t, body[t].balanced);
     load.col(t) = own.force;
     if (!spaces().leaves_couples()) continue;
@@ -44,8 +45,9 @@ void Discretization::take_up_body_load() {
   }
 }
 
-void Discretization::take_up_traction() {
+void Discretization::take_up_traction(Progress* progress) {
   for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
+    if (progress) progress->check_in(edge);
     if (!traction.acts_on(edge)) continue;
     for (int c = 0; c < spaces().components; ++c) {
       const LocalVector moments =

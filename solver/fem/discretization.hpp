@@ -43,8 +43,8 @@ struct Discretization {
   Eigen::VectorXd coupling_load;
 
  private:
-  void take_up_body_load();
-  void take_up_traction();
+  void take_up_body_load(Progress* progress);
+  void take_up_traction(Progress* progress);
 };
 
 /// <−σ_n, φ_i> for every row of the clearance space, the force that the foundation exerts, from the outward

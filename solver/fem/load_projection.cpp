@@ -92,7 +92,6 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
       unmet_ = known;
     }
   }
-  all_.shrink_to_fit();  // it stays as long as the problem, and has room for up to twice as many
   // One that has no cells would be off by as much as f.
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {

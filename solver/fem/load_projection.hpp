@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -51,8 +52,8 @@ class LoadProjection {
   /// Of the next triangle; if it is that of the last one and neither is to change, both share it.
   void take(ProjectedLoad load, bool may_be_shared = true);
 
-  std::vector<ProjectedLoad> all_;
-  std::vector<int> number_of_;  ///< of each triangle that in `all_`; none if they have one for all
+  std::deque<ProjectedLoad> all_;  ///< grows without being copied: that of a large mesh takes half a second
+  std::vector<int> number_of_;     ///< of each triangle that in `all_`; none if they have one for all
   bool last_may_be_shared_ = false;
   std::vector<std::string> unmet_;
 };
