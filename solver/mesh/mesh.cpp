@@ -55,6 +55,10 @@ class HalfEdges {
 
 void number_edges(Mesh& mesh, const HalfEdges& halves, Progress* progress) {
   mesh.triangle_edges.resize(mesh.triangles.size());
+  // As many as there are (Euler), but for holes and bodies.
+  const std::size_t about = mesh.points.size() + mesh.triangles.size();
+  mesh.edges.reserve(about);
+  mesh.edge_triangles.reserve(about);
   for (int near = 0; near < static_cast<int>(mesh.points.size()); ++near) {
     if (progress) progress->check_in(near);
     for (int i = halves.begin(near); i < halves.end(near); ++i) {

@@ -42,6 +42,7 @@ void check_row(int row, const Divisions& squares, Progress* progress) {
 std::vector<Point> grid_points(const Grid& grid, const Divisions& squares, Pattern pattern,
                                Progress* progress) {
   std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(grid.centre(0, pattern == Pattern::crossed ? squares.y : 0)));
   for (int j = 0; j <= squares.y; ++j) {
     check_row(j, squares, progress);
     for (int i = 0; i <= squares.x; ++i) points.push_back(grid.at(i, j));
@@ -108,6 +109,8 @@ Divisions divisions(const Rectangle& domain, const MeshRequest& request) {
 Mesh rectangle_mesh(const Rectangle& domain, const Divisions& squares, Pattern pattern, Progress* progress) {
   const Grid grid(domain, squares);
   std::vector<std::array<int, 3>> triangles;
+  const std::size_t of_square = pattern == Pattern::crossed ? 4 : 2;
+  triangles.reserve(of_square * squares.x * squares.y);
   for (int j = 0; j < squares.y; ++j) {
     check_row(j, squares, progress);
     for (int i = 0; i < squares.x; ++i) cut_square(grid, i, j, pattern, triangles);
