@@ -1,15 +1,12 @@
 #include "server/cores.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <string_view>
-#include <thread>
 
+#include <sched.h>
 #include <unistd.h>
 
 #include <cblas.h>
-
-#include "system/large_products.hpp"
 
 namespace signorini::server {
 
@@ -25,9 +22,13 @@ void use_vector_instructions(char** argv) {
   execv("/proc/self/exe", argv);  // returns only if it fails: then the solves are slow
 }
 
-void share_cores(int solves) {
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  share_large_products(std::max(1, cores / solves));
+int cores() {
+  cpu_set_t own;
+  return sched_getaffinity(0, sizeof own, &own) == 0 ? CPU_COUNT(&own) : 1;
+}
+
+void use_one_thread_of_blas() {
+  openblas_set_num_threads(1);
 }
 
 }  // namespace signorini::server

@@ -7,8 +7,11 @@ namespace signorini::server {
 /// slower, for one that is newer than itself; it reads the variable when it is loaded, before main.
 void use_vector_instructions(char** argv);
 
-/// Gives every one of so many solves that run at once its share of the cores: the factorisation works in the
-/// threads of BLAS where its products are large, and more threads than cores make all of them slower.
-void share_cores(int solves);
+/// Those that this process may use.
+int cores();
+
+/// BLAS has one thread from now on: the solver shares large products with cores that are idle itself
+/// (IdleCores), and more threads than cores make all of them slower.
+void use_one_thread_of_blas();
 
 }  // namespace signorini::server

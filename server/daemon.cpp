@@ -13,6 +13,7 @@
 #include "server/exit_code.hpp"
 #include "server/handlers/routes.hpp"
 #include "server/http/listener.hpp"
+#include "server/idle_cores.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/jobs/memory_store.hpp"
 #include "server/jobs/postgres/store.hpp"
@@ -118,9 +119,10 @@ void end_solves(Scheduler& scheduler, Clock::time_point until) {
 void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<bool>& failed) {
   const std::unique_ptr<JobStore> store = open_store(config);
   KeptOperators operators(config.cache_bytes);
+  IdleCores idle(cores());
   Metrics metrics;
-  const auto solve = [&operators](const api::Request& request, Observer& observer) {
-    return solve_request(request, observer, operators);
+  const auto solve = [&](const api::Request& request, Observer& observer) {
+    return solve_request(request, observer, operators, idle);
   };
   const auto ended = [&metrics](const Job& job, const Ending& ending) { metrics.ended(job, ending); };
   const auto max_memory = static_cast<double>(config.max_memory);
@@ -157,7 +159,7 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
 
 int run_daemon(const DaemonConfig& config) {
   const StopSignals signals;
-  share_cores(config.workers);
+  use_one_thread_of_blas();
   raise_descriptor_limit();
   std::atomic<bool> failed = false;
   try {

@@ -12,6 +12,7 @@
 #include "server/cores.hpp"
 #include "server/exit_code.hpp"
 #include "server/failure.hpp"
+#include "server/idle_cores.hpp"
 #include "server/jobs/kept_operators.hpp"
 #include "server/machine_memory.hpp"
 #include "server/terminal.hpp"
@@ -59,7 +60,8 @@ class LocalObserver : public Observer {
 /// Solves the problem and completes its series.
 Ending solved(const api::Request& request, LocalObserver& observer, Series* series) {
   KeptOperators not_kept(0);
-  Ending ending = ending_of(solve_request(request, observer, not_kept));
+  IdleCores idle(cores());
+  Ending ending = ending_of(solve_request(request, observer, not_kept, idle));
   if (series == nullptr) return ending;
   if (!request.problem.mesh.adaptive) series->add_entry(0, *ending.solution);
   series->finish();
@@ -150,7 +152,7 @@ int find_and_write(std::int64_t triangles, const std::function<void(Observer&)>&
 }
 
 int run_locally(const std::function<int()>& command) {
-  share_cores(1);
+  use_one_thread_of_blas();
   keep_freed_memory();
   try {
     return command();

@@ -93,7 +93,7 @@ class SweepOver {
 
   SweepEntry entry(std::size_t number) {
     const Variation& variation = sweep_[number];
-    Progress progress(within_, settings_.time_limit, settings_.spent + whole_.seconds());
+    Progress progress(within_, settings_.time_limit, settings_.spent + whole_.seconds(), settings_.executor);
     ShowSolution show;
     if (observer_.sees_entries()) show = [&](const Solution& own) { observer_.entry(number, own); };
     SweepEntry entry;
@@ -173,7 +173,7 @@ Solution solve_by_method(const Problem& problem, const std::vector<Variation>& s
 
 Solution solve(const Problem& problem, const std::vector<Variation>& sweep, const Settings& settings,
                Observer& observer, OperatorCache* cache) {
-  Progress progress(observer, settings.time_limit, settings.spent);
+  Progress progress(observer, settings.time_limit, settings.spent, settings.executor);
   const MemoryMeter memory;
   progress.enter(Phase::mesh);
   constexpr double all = std::numeric_limits<double>::infinity();

@@ -77,13 +77,16 @@ double seconds_before(const Claim& claim) {
 
 }  // namespace
 
-Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators) {
+Solution solve_request(const api::Request& request, Observer& observer, OperatorCache& operators,
+                       IdleCores& cores) {
+  const IdleCores::Solve occupied(cores);
   const MemoryMeter memory;
-  Solution solution = solve(request.problem, request.sweep, request.settings, observer, operators);
+  Settings settings = request.settings;
+  settings.executor = &cores;
+  Solution solution = solve(request.problem, request.sweep, settings, observer, operators);
   if (request.study && observer.keep_going()) {
-    Settings after_it = request.settings;
-    after_it.spent += solution.summary.timings.total;
-    solution.study = run_study(request.problem, *request.study, after_it, observer);
+    settings.spent += solution.summary.timings.total;
+    solution.study = run_study(request.problem, *request.study, settings, observer);
   }
   solution.summary.peak_memory_bytes = memory.peak();
   return solution;

@@ -4,6 +4,7 @@
 #include "certify/elasticity/airy_minimization.hpp"
 #include "certify/elasticity/traction_relaxation.hpp"
 #include "certify/membrane/stream_function_minimization.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -16,15 +17,26 @@ constexpr int kSweepsOfDisplacement = 1, kSweepsOfTractions = 2;
 void improve(const Discretization& discrete, const Solution& solution, const Eigen::VectorXd& clearance,
              AdmissiblePair& pair, Progress& progress) {
   if (discrete.spaces().components == 1) {
-    pair.v.relax(work_of_loads(discrete), kStepsFromAverage, progress);
+    pair.v.relax(work_of_loads(discrete, progress), kStepsFromAverage, progress);
     minimize_stream_function(discrete, pair.v, clearance, pair.pressure, progress);
     return;
   }
-  pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
-  if (discrete.spaces().order == 1)
+  const auto relax_tractions_of_pair = [&](Progress& its) {
+    pair.tractions.emplace(discrete, solution.stress, pair.pressure);
+    relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, its);
+  };
+  if (discrete.spaces().order == 1) {
+    pair.v.relax_on_stars(kSweepsOfDisplacement, progress);
     minimize_airy(discrete, solution.stress, pair.v, clearance, pair.pressure, progress);
-  pair.tractions.emplace(discrete, solution.stress, pair.pressure);
-  relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, progress);
+    return relax_tractions_of_pair(progress);
+  }
+  // Neither knows of the other.
+  side_by_side(2, progress, [&](int which, Progress& its) {
+    if (which == 0)
+      relax_tractions_of_pair(its);
+    else
+      pair.v.relax_on_stars(kSweepsOfDisplacement, its);
+  });
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include "progress/in_parts.hpp"
+
 namespace signorini {
 namespace {
 
@@ -18,25 +20,36 @@ Tensor<D> symmetric(Tensor<D> tensor) {
 template <int D>
 double estimate(const Discretization& discrete, const Eigen::MatrixXd& stress,
                 const AdmissibleDisplacement& v, Progress& progress) {
-  LawField<D> law(discrete.problem.material);
+  struct Squares {
+    double gap = 0, size = 0;
+  };
   const StressValues<D> values(discrete.spaces(), kPoints);
-  double gap = 0, size = 0;
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    progress.check_in(t);
-    const AffineMap map(discrete.mesh.corners(t));
-    const Eigen::Matrix2d inverse = map.jacobian.inverse();
-    const Quadratic<D> own = v.on<D>(t);
-    for (std::size_t q = 0; q < kPoints.size(); ++q) {
-      const auto& [compliance, stiffness] = law(map(kPoints[q]));
-      const Tensor<D> sigma = symmetric<D>(values(static_cast<int>(q), map, stress.col(t))),
-                      strain = symmetric<D>(
-                          gradient<D>(inverse, own * quadratic_gradients(kPoints[q]).transpose())),
-                      difference = compliance * sigma - strain;
-      gap += map.determinant * difference.dot(stiffness * difference);
-      size += map.determinant * sigma.dot(compliance * sigma);
+  const auto find = [&](Part part, Progress& own) {
+    Squares found;
+    LawField<D> law(discrete.problem.material);
+    for (int t = part.begin; t < part.end; ++t) {
+      own.check_in(t);
+      const AffineMap map(discrete.mesh.corners(t));
+      const Eigen::Matrix2d inverse = map.jacobian.inverse();
+      const Quadratic<D> displacement = v.on<D>(t);
+      for (std::size_t q = 0; q < kPoints.size(); ++q) {
+        const auto& [compliance, stiffness] = law(map(kPoints[q]));
+        const Tensor<D> sigma = symmetric<D>(values(static_cast<int>(q), map, stress.col(t))),
+                        strain = symmetric<D>(
+                            gradient<D>(inverse, displacement * quadratic_gradients(kPoints[q]).transpose())),
+                        difference = compliance * sigma - strain;
+        found.gap += map.determinant * difference.dot(stiffness * difference);
+        found.size += map.determinant * sigma.dot(compliance * sigma);
+      }
     }
-  }
-  return size > 0 ? gap / size : 1;
+    return found;
+  };
+  Squares all;
+  in_parts(discrete.triangles(), progress, find, [&](const Squares& found) {
+    all.gap += found.gap;
+    all.size += found.size;
+  });
+  return all.size > 0 ? all.gap / all.size : 1;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ void ShapeNorms::look_over(const Discretization& discrete) {
   shapes_.emplace(AffineMap(mesh.corners(0)));
   for (int t = 0; t < discrete.triangles(); ++t) {
     const AffineMap map(mesh.corners(t));
-    ++(*shapes_)(map.jacobian, [&map] { return Shape{map, 0, nullptr, nullptr}; }).triangles;
+    ++(*shapes_)(map.jacobian, [&map] { return Shape(map); }).triangles;
   }
   shapes_->forget_if([](const Shape& shape) { return shape.triangles < kOften; });
 }
@@ -22,18 +22,16 @@ void ShapeNorms::look_over(const Discretization& discrete) {
 const JohnsonMercierNorms* ShapeNorms::elastic(const AffineMap& map, const Spaces& spaces, LawField<2>& law) {
   Shape* const shape = shape_of(map);
   if (shape == nullptr) return nullptr;
-  if (!shape->elastic)
-    shape->elastic = std::make_unique<const JohnsonMercierNorms>(johnson_mercier_rule(spaces, 6), shape->map,
-                                                                 SymmetricLaw(law(map({0, 0})).compliance));
-  return shape->elastic.get();
+  return shape->elastic.get_or(*makes_, [&] {
+    return JohnsonMercierNorms(johnson_mercier_rule(spaces, 6), shape->map,
+                               SymmetricLaw(law(map({0, 0})).compliance));
+  });
 }
 
 const MembraneNorms* ShapeNorms::membrane(const AffineMap& map, const Spaces& spaces, LawField<1>& law) {
   Shape* const shape = shape_of(map);
   if (shape == nullptr) return nullptr;
-  if (!shape->membrane)
-    shape->membrane = std::make_unique<const MembraneNorms>(spaces, shape->map, law(map({0, 0})));
-  return shape->membrane.get();
+  return shape->membrane.get_or(*makes_, [&] { return MembraneNorms(spaces, shape->map, law(map({0, 0}))); });
 }
 
 const JohnsonMercierNorms* ShapeNorms::made(const AffineMap& map) {

@@ -7,6 +7,7 @@
 #include "certify/pressure/contact_terms.hpp"
 #include "certify/rounding.hpp"
 #include "certify/traction_work.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -17,29 +18,62 @@ bool is_zero(const ContactPressure& pressure, int i) {
 
 }  // namespace
 
+void TriangleTotals::add(const TriangleSums& own, double o, double& share) {
+  const double off = o + own.rounding;
+  all += own;
+  all.known += off * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
+  oscillation_square += o * o;
+  rounding_square += own.rounding * own.rounding;
+  const double of_gap = std::pow(own.norm_of_gap() + o, 2),
+               of_correction = std::pow(std::sqrt(own.correction + own.slack) + off, 2);
+  balanced_gap += of_gap;
+  balanced_correction += of_correction;
+  share = of_gap + of_correction + own.skew;
+}
+
+TriangleTotals& TriangleTotals::operator+=(const TriangleTotals& other) {
+  all += other.all;
+  oscillation_square += other.oscillation_square;
+  rounding_square += other.rounding_square;
+  balanced_gap += other.balanced_gap;
+  balanced_correction += other.balanced_correction;
+  return *this;
+}
+
 template <int D, typename Sums>
-void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
-                 const Owners& owners, Progress& progress, const AdmissiblePair* second, PairSums* of_all) {
-  LawField<D> law(discrete.problem.material);
+void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair,
+                 const Sums& sums, const Owners& owners, Progress& progress, const AdmissiblePair* second,
+                 PairSums* of_all) {
   const Eigen::VectorXd unbalanced = oscillations(discrete, load_remainders(discrete, owners, progress),
                                                   pair.pressure, laws, owners, progress);
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    progress.check_in(t);
-    if (owners[t] < 0 && !of_all) continue;
-    const TriangleSums own = sums(t, law, laws);
-    if (of_all) of_all->add(t, own);
-    if (owners[t] < 0) continue;
-    const double o = unbalanced[t], off = o + own.rounding;
-    all += own;
-    all.known += off * (2 * std::sqrt(own.moved + own.slack) + std::sqrt(own.span + own.slack));
-    oscillation_square += o * o;
-    rounding_square += own.rounding * own.rounding;
-    const double of_gap = std::pow(own.norm_of_gap() + o, 2),
-                 of_correction = std::pow(std::sqrt(own.correction + own.slack) + off, 2);
-    balanced_gap += of_gap;
-    balanced_correction += of_correction;
-    shares[owners[t]] += of_gap + of_correction + own.skew;
-  }
+  struct Found {
+    Part part;
+    TriangleTotals totals = {};
+    PairTotals of_pair = {};
+    Eigen::VectorXd shares = Eigen::VectorXd::Zero(part.end - part.begin);
+  };
+  const auto find = [&](Part part, Progress& own_progress) {
+    Found found{part};
+    Sums on(sums);
+    LawField<D> law(discrete.problem.material);
+    for (int t = part.begin; t < part.end; ++t) {
+      own_progress.check_in(t);
+      if (owners[t] < 0 && !of_all) continue;
+      const TriangleSums own = on(t, law, laws);
+      if (of_all) {
+        of_all->gaps[t] = gap_from_above(own);
+        found.of_pair.add(own);
+      }
+      if (owners[t] >= 0) found.totals.add(own, unbalanced[t], found.shares[t - part.begin]);
+    }
+    return found;
+  };
+  in_parts(discrete.triangles(), progress, find, [&](const Found& found) {
+    *this += found.totals;
+    if (of_all) *of_all += found.of_pair;
+    for (int t = found.part.begin; t < found.part.end; ++t)
+      if (owners[t] >= 0) shares[owners[t]] += found.shares[t - found.part.begin];
+  });
   CellBudget budget{ContactTerms::kCells, &progress};
   const int edges = static_cast<int>(discrete.clearance.edges.size());
   for (int i = 0; i < edges; ++i) {
@@ -66,10 +100,10 @@ void Totals::add(const Discretization& discrete, const LawOnMesh& laws, const Ad
   work += of_traction.size;
 }
 
-template void Totals::add<1>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, MembraneSums,
-                             const Owners&, Progress&, const AdmissiblePair*, PairSums*);
-template void Totals::add<2>(const Discretization&, const LawOnMesh&, const AdmissiblePair&, ElasticSums,
-                             const Owners&, Progress&, const AdmissiblePair*, PairSums*);
+template void Totals::add<1>(const Discretization&, const LawOnMesh&, const AdmissiblePair&,
+                             const MembraneSums&, const Owners&, Progress&, const AdmissiblePair*, PairSums*);
+template void Totals::add<2>(const Discretization&, const LawOnMesh&, const AdmissiblePair&,
+                             const ElasticSums&, const Owners&, Progress&, const AdmissiblePair*, PairSums*);
 
 void Totals::add(const CarriedLoads& loads) {
   contact *= 1 + loads.change_of_pressure;

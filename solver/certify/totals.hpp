@@ -12,23 +12,32 @@ namespace signorini {
 /// Of each triangle of a mesh, the triangle of the whole that it belongs to; -1 if others stand for it.
 using Owners = std::vector<int>;
 
+/// The sums over some triangles.
+struct TriangleTotals {
+  /// Adds a triangle with the oscillation o on it, and finds its share.
+  void add(const TriangleSums& own, double o, double& share);
+  TriangleTotals& operator+=(const TriangleTotals& other);
+
+  TriangleSums all;
+  double oscillation_square = 0, rounding_square = 0;
+  double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)², o with rounding
+};
+
 /// The sums over all triangles and over Γ_C, and the shares of the triangles of the whole.
-struct Totals {
+struct Totals : TriangleTotals {
   explicit Totals(int triangles) : shares(Eigen::VectorXd::Zero(triangles)) {}
 
   /// Adds the triangles that have owners. `sums` are those of the pair, and of the second one if there is
   /// one: MembraneSums or ElasticSums. `of_all`: what all triangles are added to.
   template <int D, typename Sums>
-  void add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair, Sums sums,
-           const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr,
+  void add(const Discretization& discrete, const LawOnMesh& laws, const AdmissiblePair& pair,
+           const Sums& sums, const Owners& owners, Progress& progress, const AdmissiblePair* second = nullptr,
            PairSums* of_all = nullptr);
 
   /// Adds what carries the uncertain loads, after all triangles.
   void add(const CarriedLoads& loads);
 
-  TriangleSums all;
-  double contact = 0, oscillation_square = 0, rounding_square = 0;
-  double balanced_gap = 0, balanced_correction = 0;  ///< Σ (‖e − b‖ + o)² and Σ (‖δ‖ + o)², o with rounding
+  double contact = 0;
   double work = 0;     ///< |∫ t·v| with all signs taken as one: what rounding is measured by
   double carried = 0;  ///< the norm of the stress that carries uncertain loads
   std::optional<std::string> endless_gap;  ///< where p* acts on a gap that is not known to be finite

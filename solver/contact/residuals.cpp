@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "fem/per_shape.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -37,6 +38,12 @@ class StressNorm {
     largest_compliance_ = std::max(largest_compliance_, compliance.diagonal().maxCoeff());
   }
 
+  void add(const StressNorm& of_others) {
+    square_ += of_others.square_;
+    largest_term_ = std::max(largest_term_, of_others.largest_term_);
+    largest_compliance_ = std::max(largest_compliance_, of_others.largest_compliance_);
+  }
+
   double largest_term() const { return largest_term_; }
 
   /// A small part of ‖σ‖ for displacements of the same size that strain the body as a whole: the diagonal of
@@ -55,22 +62,101 @@ class StressNorm {
   double clearance_, largest_term_, square_ = 0, largest_compliance_ = 0;
 };
 
-/// One pass over the triangles that gathers what the residuals of equilibrium, of the constitutive law and
-/// of symmetry need.
+/// What the residuals of equilibrium, of the constitutive law and of symmetry need of some triangles.
+class BalanceOfPart {
+ public:
+  BalanceOfPart(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& discrete,
+                Part own, Progress& progress)
+      : part(own), norm(clearance), solution_(solution), discrete_(discrete), shapes_(discrete) {
+    const Eigen::Index triangles = part.end - part.begin, traces = discrete.traces.traces_per_triangle();
+    flux.resize(traces, triangles);
+    trace.resize(traces, triangles);
+    if (discrete.spaces().rotations()) {
+      skew.resize(3, triangles);
+      skew_terms.resize(3, triangles);
+    }
+    for (int t = part.begin; t < part.end; ++t) {
+      progress.check_in(t);
+      add_triangle(t);
+    }
+  }
+
+  const Part part;
+  double imbalance_square = 0, load_square = 0, interior = 0;
+  StressNorm norm;
+  // A column a triangle.
+  Eigen::MatrixXd flux, trace;        ///< in the components of its edges
+  Eigen::Matrix3Xd skew, skew_terms;  ///< at its corners; of an elastic body
+
+ private:
+  struct Shape {
+    ElementMatrices matrices;
+    LocalMatrix mass_inverse;
+    LocalMatrix stress_mass;
+  };
+
+  void add_triangle(int t) {
+    const Shape& shape = shapes_(t, [&](const ElementMatrices& matrices) -> Shape {
+      const LocalMatrix& mass = matrices.displacement_mass;
+      return {matrices, mass.inverse(), discrete_.element.stress_mass(discrete_.mesh, t)};
+    });
+    const ElementMatrices& matrices = shape.matrices;
+    const LocalVector load = discrete_.load.col(t);
+    const LocalVector sigma = solution_.stress.col(t), u = solution_.displacement.col(t);
+    const LocalMatrix& b = discrete_.spaces().divergence;
+    const LocalVector imbalance = b.lazyProduct(sigma) + load;
+    imbalance_square += imbalance.dot(shape.mass_inverse.lazyProduct(imbalance));
+    load_square += load.dot(shape.mass_inverse.lazyProduct(load));
+
+    // M σ + Bᵀ u + Aᵀ γ is m on the edges (seen from this side), and 0 for the functions without flux.
+    const LocalVector strain = matrices.compliance.lazyProduct(sigma), rise = b.transpose().lazyProduct(u);
+    norm.add(matrices.compliance, shape.stress_mass, sigma, strain, rise);
+    LocalVector term = strain + rise;
+    for (int z = 0; z < matrices.skew.rows(); ++z) add_corner(t, z, matrices.skew.row(z), sigma, term);
+    const int n = discrete_.traces.traces_per_triangle();
+    if (term.size() > n) interior = std::max(interior, term.tail(term.size() - n).lpNorm<Eigen::Infinity>());
+    set_edges(t, sigma.head(n), term.head(n));
+  }
+
+  void add_corner(int t, int z, const LocalVector& of_corner, const LocalVector& sigma, LocalVector& term) {
+    term += solution_.rotation[discrete_.mesh.triangles[t][z]] * of_corner;
+    skew(z, t - part.begin) = of_corner.dot(sigma);
+    skew_terms(z, t - part.begin) = of_corner.cwiseAbs().dot(sigma.cwiseAbs());
+  }
+
+  void set_edges(int t, LocalVector own_flux, LocalVector own_trace) {
+    if (discrete_.traces.is_turned(t)) {
+      const Eigen::Index n = own_flux.size();
+      const LocalMatrix map = discrete_.traces.to_xy(t).topLeftCorner(n, n);
+      own_flux = (map.transpose() * own_flux).eval();
+      own_trace = (map.transpose() * own_trace).eval();
+    }
+    flux.col(t - part.begin) = own_flux;
+    trace.col(t - part.begin) = own_trace;
+  }
+
+  const Solution& solution_;
+  const Discretization& discrete_;
+  PerShape<Shape> shapes_;
+};
+
+/// The same of all triangles, and on their edges and points what those on both sides have.
 class Balance {
  public:
-  Balance(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& discrete)
-      : solution_(solution),
-        discrete_(discrete),
+  Balance(const Solution& solution, const Eigen::VectorXd& clearance, const Discretization& discrete,
+          Progress& progress)
+      : discrete_(discrete),
         per_edge_(discrete.spaces().traces_per_edge()),
         traces_(static_cast<int>(discrete.mesh.edges.size()) * per_edge_),
         flux_(Eigen::VectorXd::Zero(traces_)),
         trace_(Eigen::VectorXd::Zero(traces_)),
         skew_(Eigen::VectorXd::Zero(discrete.mesh.points.size())),
         skew_terms_(skew_),
-        shapes_(discrete),
         norm_(clearance) {
-    for (int t = 0; t < discrete.triangles(); ++t) add_triangle(t);
+    in_parts(
+        discrete.triangles(), progress,
+        [&](Part part, Progress& own) { return BalanceOfPart(solution, clearance, discrete, part, own); },
+        [this](const BalanceOfPart& of_part) { add(of_part); });
     compare_with_boundary(clearance);
     for (int point = 0; point < solution.rotation.size(); ++point)
       skew_[point] += discrete.coupling_load[discrete.traces.rotation_at(point)];
@@ -98,44 +184,28 @@ class Balance {
   }
 
  private:
-  void add_triangle(int t) {
-    const Shape& shape = shapes_(t, [&](const ElementMatrices& matrices) -> Shape {
-      const LocalMatrix& mass = matrices.displacement_mass;
-      return {matrices, mass.inverse(), discrete_.element.stress_mass(discrete_.mesh, t)};
-    });
-    const ElementMatrices& matrices = shape.matrices;
-    const LocalVector load = discrete_.load.col(t);
-    const LocalVector sigma = solution_.stress.col(t), u = solution_.displacement.col(t);
-    const LocalMatrix& b = discrete_.spaces().divergence;
-    const LocalVector imbalance = b.lazyProduct(sigma) + load;
-    imbalance_square_ += imbalance.dot(shape.mass_inverse.lazyProduct(imbalance));
-    load_square_ += load.dot(shape.mass_inverse.lazyProduct(load));
-
-    // M σ + Bᵀ u + Aᵀ γ is m on the edges (seen from this side), and 0 for the functions without flux.
-    const LocalVector strain = matrices.compliance.lazyProduct(sigma), rise = b.transpose().lazyProduct(u);
-    norm_.add(matrices.compliance, shape.stress_mass, sigma, strain, rise);
-    LocalVector term = strain + rise;
-    for (int z = 0; z < matrices.skew.rows(); ++z) add_corner(t, z, matrices.skew.row(z), sigma, term);
-    const int n = discrete_.traces.traces_per_triangle();
-    if (term.size() > n)
-      interior_ = std::max(interior_, term.tail(term.size() - n).lpNorm<Eigen::Infinity>());
-    add_edges(t, sigma.head(n), term.head(n));
-  }
-
-  void add_corner(int t, int z, const LocalVector& skew, const LocalVector& sigma, LocalVector& term) {
-    const int point = discrete_.mesh.triangles[t][z];
-    term += solution_.rotation[point] * skew;
-    skew_[point] += skew.dot(sigma);
-    skew_terms_[point] += skew.cwiseAbs().dot(sigma.cwiseAbs());
-  }
-
-  void add_edges(int t, LocalVector flux, LocalVector trace) {
-    if (discrete_.traces.is_turned(t)) {
-      const Eigen::Index n = flux.size();
-      const LocalMatrix map = discrete_.traces.to_xy(t).topLeftCorner(n, n);
-      flux = (map.transpose() * flux).eval();
-      trace = (map.transpose() * trace).eval();
+  void add(const BalanceOfPart& own) {
+    imbalance_square_ += own.imbalance_square;
+    load_square_ += own.load_square;
+    interior_ = std::max(interior_, own.interior);
+    norm_.add(own.norm);
+    for (int t = own.part.begin; t < own.part.end; ++t) {
+      const Eigen::Index column = t - own.part.begin;
+      add_on_edges(t, own.flux.col(column), own.trace.col(column));
+      if (own.skew.cols() > 0) add_at_corners(t, own.skew.col(column), own.skew_terms.col(column));
     }
+  }
+
+  void add_at_corners(int t, const Eigen::Vector3d& skew, const Eigen::Vector3d& terms) {
+    for (int z = 0; z < 3; ++z) {
+      const int point = discrete_.mesh.triangles[t][z];
+      skew_[point] += skew[z];
+      skew_terms_[point] += terms[z];
+    }
+  }
+
+  template <typename Column>
+  void add_on_edges(int t, const Column& flux, const Column& trace) {
     for (int j = 0; j < flux.size(); ++j) {
       const int dof = discrete_.traces.dof(t, j);
       const bool first = discrete_.mesh.edge_triangles[dof / per_edge_][0] == t;
@@ -167,13 +237,6 @@ class Balance {
       }
   }
 
-  struct Shape {
-    ElementMatrices matrices;
-    LocalMatrix mass_inverse;
-    LocalMatrix stress_mass;
-  };
-
-  const Solution& solution_;
   const Discretization& discrete_;
   int per_edge_;
   int traces_;                  ///< degrees of freedom of m
@@ -181,7 +244,6 @@ class Balance {
   Eigen::VectorXd trace_;       ///< difference of the traces seen from both sides
   Eigen::VectorXd skew_;        ///< (as σ, φ_z) and the couple for each point
   Eigen::VectorXd skew_terms_;  ///< the sums of the sizes of the terms of (as σ, φ_z)
-  PerShape<Shape> shapes_;
   double interior_ = 0;
   StressNorm norm_;
   double imbalance_square_ = 0, load_square_ = 0;
@@ -225,8 +287,8 @@ double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
 }
 
 Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
-                    const Eigen::VectorXd& pressure, const Discretization& discrete) {
-  const Balance balance(solution, clearance, discrete);
+                    const Eigen::VectorXd& pressure, const Discretization& discrete, Progress& progress) {
+  const Balance balance(solution, clearance, discrete, progress);
   std::vector<int> tested;
   Eigen::VectorXd weight(clearance.size());
   for (int i = 0; i < static_cast<int>(weight.size()); ++i) {

@@ -51,8 +51,8 @@ double relative_change(const Eigen::Ref<const Eigen::MatrixXd>& last,
 /// - the contact residuals, with mean_stress(). A node that Γ_C shares with Γ_D is left out: its
 ///   clearance is data, and no function of Λ_h tests its pressure.
 ///
-/// `clearance` and `pressure` have one entry a row of the clearance space.
+/// `clearance` and `pressure` have one entry a row of the clearance space. Throws what Progress throws.
 Residuals residuals(const Solution& solution, const Eigen::VectorXd& clearance,
-                    const Eigen::VectorXd& pressure, const Discretization& discrete);
+                    const Eigen::VectorXd& pressure, const Discretization& discrete, Progress& progress);
 
 }  // namespace signorini

@@ -5,6 +5,7 @@
 
 namespace signorini {
 
+class Executor;
 class Helpers;
 
 /// The paper's Uzawa iteration (section 5) with numbers for its parameters.
@@ -41,7 +42,8 @@ struct Settings {
   Factorization factorization = Factorization::multifrontal;  ///< of whoever solves, not of the problem
   bool entries_alone =
       false;  ///< only the entries of the sweep are asked for, not the problem's own solution
-  Helpers* helpers = nullptr;  ///< with the sweep, if there are any
+  Helpers* helpers = nullptr;    ///< with the sweep, if there are any
+  Executor* executor = nullptr;  ///< on cores that nobody else wants, if there are any
 };
 
 }  // namespace signorini

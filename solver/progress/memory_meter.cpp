@@ -36,6 +36,42 @@ std::int64_t MemoryMeter::peak() const {
   return account.peak - start_;
 }
 
+namespace {
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+MemoryOfHelpers::MemoryOfHelpers()
+    : limit_(account.limit == kNoLimit ? kNoLimit : account.limit - account.now) {}
+
+MemoryOfHelpers::~MemoryOfHelpers() {
+  for (const auto& [thread, helper] : helpers_) {
+    account.now += helper.now;
+    account.peak += helper.peak;
+  }
+  account.limit_met = account.limit_met || limit_met_;
+}
+
+MemoryOfHelpers::Share::Share(MemoryOfHelpers& all)
+    : all_(all),
+      now_before_(account.now),
+      peak_before_(account.peak),
+      limit_before_(account.limit),
+      limit_met_before_(account.limit_met) {
+  account = {.limit = all.limit_};
+}
+
+MemoryOfHelpers::Share::~Share() {
+  const Account own = account;
+  account = {now_before_, peak_before_, limit_before_, limit_met_before_};
+  const std::lock_guard lock(all_.mutex_);
+  Helper& helper = all_.helpers_[std::this_thread::get_id()];
+  helper.peak = std::max(helper.peak, helper.now + own.peak);
+  helper.now += own.now;
+  all_.limit_met_ = all_.limit_met_ || own.limit_met;
+}
+
 Unmetered::Unmetered() : before_(account.now) {}
 
 Unmetered::~Unmetered() {

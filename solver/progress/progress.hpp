@@ -10,20 +10,26 @@
 
 namespace signorini {
 
-/// The running record of one solve: phases and their seconds, iterations and levels, and the two things that
-/// may end it early, the observer and the clock.
+class Executor;
+
+/// The running record of one solve: phases and their seconds, iterations and levels, the two things that may
+/// end it early, the observer and the clock, and who helps it.
 class Progress {
  public:
-  /// `spent` are seconds that count for the time limit, but were before the start.
-  Progress(Observer& observer, std::optional<double> time_limit, double spent = 0)
-      : observer_(observer), time_limit_(time_limit), spent_before_(spent) {}
+  /// `spent` are seconds that count for the time limit, but were before the start. The executor may be null.
+  Progress(Observer& observer, std::optional<double> time_limit, double spent = 0,
+           Executor* executor = nullptr)
+      : observer_(observer), executor_(executor), time_limit_(time_limit), spent_before_(spent) {}
 
   /// Of a part of a solve, which has a record of its own: its time ends with that of the whole.
-  Progress(Observer& observer, const Progress& whole) : Progress(observer, whole.time_left()) {
+  Progress(Observer& observer, const Progress& whole)
+      : Progress(observer, whole.time_left(), 0, whole.executor_) {
     for_answer_ = 0;
   }
 
   Observer& observer() { return observer_; }
+  /// Null if nobody helps.
+  Executor* executor() const { return executor_; }
 
   /// Throws Cancelled if the observer ends the solve, TimeUp if the time is up.
   void enter(Phase phase);
@@ -70,6 +76,7 @@ class Progress {
   double time_left_to_iterate() const;
 
   Observer& observer_;
+  Executor* executor_;
   std::optional<double> time_limit_;
   double for_answer_ = kForAnswer;
   double spent_before_;

@@ -233,7 +233,7 @@ Solution describe(const Discretization& discrete, std::shared_ptr<const Mesh> me
   solution.contact = contact_parts(discrete.clearance, discrete.mesh, clearance, pressure);
 
   progress.check();
-  summary.residuals = residuals(solution, clearance, pressure, discrete);
+  summary.residuals = residuals(solution, clearance, pressure, discrete, progress);
   summary.outcome = judged(fields.outcome, summary.residuals, settings);
   summary.iterations = progress.iterations();
   summary.advice = advice(settings, summary.outcome, summary.iterations);

@@ -21,7 +21,7 @@ void add_supports(const Discretization& discrete, std::shared_ptr<const ElementT
                               " of them: ask for quantities");
     return;
   }
-  certified.supports = Reactions(discrete, solution, extensions, progress).all(certified.unmet);
+  certified.supports = Reactions(discrete, solution, extensions, progress).all(certified.unmet, progress);
 }
 
 }  // namespace

@@ -42,11 +42,11 @@ CondensedDual::Solved& CondensedDual::solved(const DualContact& contact, Progres
   return *last_;
 }
 
-void CondensedDual::find_residuals(Solved& solved) const {
+void CondensedDual::find_residuals(Solved& solved, Progress& progress) const {
   if (std::exchange(solved.has_residuals, true)) return;
   const Eigen::VectorXd on_rows = discretization_.clearance.clearance(solved.clearance);
   solved.solution.summary.residuals =
-      residuals(solved.solution, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discretization_);
+      residuals(solved.solution, on_rows, Eigen::VectorXd::Zero(on_rows.size()), discretization_, progress);
 }
 
 void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progress& progress) {
@@ -59,7 +59,7 @@ void DualSolution::solve(const Eigen::VectorXd& clearance, double factor, Progre
 
 CertifiedSolution DualSolution::certified(const CertifiedSolution& base, double factor, const LawOnMesh& laws,
                                           Progress& progress) const {
-  dual_.find_residuals(*solved_);
+  dual_.find_residuals(*solved_, progress);
   return {discretization(),
           solved_->solution,
           dual_pair(discretization(), solved_->solution, solved_->coupling, dual_.of_balance_, base.pair,

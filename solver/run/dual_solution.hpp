@@ -28,7 +28,7 @@ class CondensedDual {
   };
 
   Solved& solved(const DualContact& contact, Progress& progress);
-  void find_residuals(Solved& solved) const;
+  void find_residuals(Solved& solved, Progress& progress) const;
 
   const std::shared_ptr<const Operator> operator_;  ///< has the mesh
   Problem problem_;

@@ -178,11 +178,12 @@ double minimization(const Spaces& spaces, const SolveSizes& sizes) {
 }
 
 /// What takes place while the error is bounded: the admissible pair and its shares, the law if it varies, and
-/// of an elastic body first the best stress, then the best of the pair.
+/// of an elastic body first the best stress, then the best of the pair, by the lower order both at once.
 double certificate(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
   constexpr double pair = 170, of_cut = 64;
   const double of_triangle = pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut);
-  const double of_best_pair = spaces.components == 2 ? sizes.triangles * relaxation(sizes.own_shapes) : 0;
+  const int at_once = spaces.components == 1 ? 0 : spaces.order == 0 ? 2 : 1;
+  const double of_best_pair = at_once * sizes.triangles * relaxation(sizes.own_shapes);
   return sizes.triangles * of_triangle + std::max(minimization(spaces, sizes), of_best_pair);
 }
 

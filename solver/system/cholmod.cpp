@@ -10,9 +10,7 @@
 
 #include "progress/pace.hpp"
 #include "system/dissection.hpp"
-#include "system/large_products.hpp"
 #include "system/symmetric_update.hpp"
-
 extern "C" void omp_set_max_active_levels(int levels);
 
 namespace signorini {
@@ -210,7 +208,6 @@ Eigen::MatrixXd square_less(const std::vector<double>& diagonal, const Eigen::Ma
   const int n = static_cast<int>(l.rows());
   Eigen::MatrixXd negative = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) negative(i, i) = diagonal[i];
-  const LargeProducts products(std::pow(n, 3));
   subtract_square(n, n, n, l.data(), n, negative.data(), n, progress);
   Pace pace(progress);
   for (int j = 0; j < n; ++j) {
@@ -233,7 +230,6 @@ Supernodes factored(const ElementSum& sum, const std::vector<double>& added, Cho
   auto factor =
       owned<Supernodes>(cholmod_l_analyze_p(matrix.get(), order.data(), nullptr, 0, common.get()), common);
   progress.check();
-  const LargeProducts products(common.get()->fl);
   cholmod_l_factorize(matrix.get(), factor.get(), common.get());
   common.check();
   progress.check();

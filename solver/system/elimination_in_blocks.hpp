@@ -5,7 +5,7 @@
 #include <cblas.h>
 
 #include "progress/progress.hpp"
-#include "system/large_products.hpp"
+#include "system/in_strips.hpp"
 #include "system/symmetric_update.hpp"
 
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -19,8 +19,7 @@ namespace signorini {
 template <typename AfterBlock>
 bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Progress& progress,
                          const AfterBlock& after_block) {
-  constexpr int kBlock = 256, kStrip = 1024;
-  const LargeProducts products(static_cast<double>(rows) * rows * pivots);
+  constexpr int kBlock = 256, kStrip = 256;
   const auto at = [&](int row, int column) {
     return matrix + static_cast<std::ptrdiff_t>(column) * distance + row;
   };
@@ -30,12 +29,15 @@ bool eliminate_in_blocks(int rows, int pivots, double* matrix, int distance, Pro
     int info = 0;
     dpotrf_("L", &width, at(begin, begin), &distance, &info);
     if (info != 0) return false;
-    for (int top = end; top < rows; top += kStrip) {
-      progress.check();
-      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
-                  std::min(kStrip, rows - top), width, 1, at(begin, begin), distance, at(top, begin),
-                  distance);
-    }
+    const int below = rows - end;
+    in_strips((below + kStrip - 1) / kStrip, static_cast<double>(below) * width * width, progress,
+              [&](int strip, Progress& its) {
+                its.check();
+                const int top = end + strip * kStrip;
+                cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                            std::min(kStrip, rows - top), width, 1, at(begin, begin), distance,
+                            at(top, begin), distance);
+              });
     if (end < pivots)
       subtract_square(rows - end, pivots - end, width, at(end, begin), distance, at(end, end), distance,
                       progress);

@@ -11,6 +11,7 @@
 #include "progress/pace.hpp"
 #include "system/dissection.hpp"
 #include "system/elimination_in_blocks.hpp"
+#include "system/in_strips.hpp"
 #include "system/lower_triangle.hpp"
 #include "system/repeated_pieces.hpp"
 
@@ -195,11 +196,14 @@ class FrontElimination {
     const int m = front.size, p = front.pivots;
     if (m <= kSmall) return factor_small(front);
     const auto update_rest = [&](int begin, int width) {
-      for (int j = 0; j < m - p; j += LowerTriangle::kStrip) {
-        const int rows = front.of_rest.rows_of_strip(j);
-        subtract_square(rows, front.of_rest.columns_of_strip(j), width, front[begin] + p + j, m,
-                        front.rest + front.of_rest.begin(j), rows, progress_);
-      }
+      constexpr int columns = LowerTriangle::kStrip;
+      const int rest = m - p;
+      in_strips((rest + columns - 1) / columns, static_cast<double>(rest) * rest * width, progress_,
+                [&](int strip, Progress& its) {
+                  const int j = strip * columns, rows = front.of_rest.rows_of_strip(j);
+                  subtract_square(rows, front.of_rest.columns_of_strip(j), width, front[begin] + p + j, m,
+                                  front.rest + front.of_rest.begin(j), rows, its);
+                });
     };
     if (!eliminate_in_blocks(m, p, front.columns, m, progress_, update_rest)) throw NotPositiveDefinite();
   }

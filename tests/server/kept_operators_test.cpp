@@ -23,7 +23,8 @@ api::Request request(int n, double gap = 0) {
 
 bool is_reused(KeptOperators& operators, const api::Request& posed) {
   Observer indifferent;
-  return solve_request(posed, indifferent, operators).summary.reused;
+  IdleCores cores(1);
+  return solve_request(posed, indifferent, operators, cores).summary.reused;
 }
 
 /// The bytes that the operator of n × n squares takes with its key.
@@ -74,7 +75,9 @@ TEST(KeptOperators, AreOfNoSolvesMemory) {
   if (sanitized) GTEST_SKIP() << "a sanitizer has an allocator of its own";
   const auto peak = [](KeptOperators& operators, int n) {
     Observer indifferent;
-    return static_cast<double>(solve_request(request(n), indifferent, operators).summary.peak_memory_bytes);
+    IdleCores cores(1);
+    return static_cast<double>(
+        solve_request(request(n), indifferent, operators, cores).summary.peak_memory_bytes);
   };
   KeptOperators none(0);
   peak(none, 20);  // tables of the process

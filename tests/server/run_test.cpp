@@ -25,7 +25,8 @@ Ending run_within(double bytes, const SolveFunction& solve) {
 
 Solution solve_alone(const api::Request& request, Observer& observer) {
   NoCache nowhere;
-  return solve_request(request, observer, nowhere);
+  IdleCores cores(2);
+  return solve_request(request, observer, nowhere, cores);
 }
 
 TEST(Run, BeyondItsMemoryEndsWithAClearWord) {

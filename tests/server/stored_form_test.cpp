@@ -62,7 +62,8 @@ TEST(StoredForm, ServesEveryFormatAsTheSolutionDid) {
     SCOPED_TRACE(example.name);
     Observer nobody;
     KeptOperators operators(0);
-    Solution solution = solve_request(api::parse_request(example.json), nobody, operators);
+    IdleCores cores(2);
+    Solution solution = solve_request(api::parse_request(example.json), nobody, operators, cores);
     solution.summary.reused = true;
     if (!solution.sweep.empty()) solution.sweep.back().error = "none";
     const Ending ending = ending_of(std::move(solution));

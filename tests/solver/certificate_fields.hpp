@@ -88,7 +88,7 @@ class CertificateFields {
     const Eigen::VectorXd clearance = discretization_.clearance.clearance(found.clearance);
     pair_.emplace(AdmissiblePair{{discretization_, solution_, x, progress_},
                                  {discretization_, solution_.stress, clearance}});
-    pair_->v.relax(work_of_loads(discretization_), kStepsFromAverage, progress_);
+    pair_->v.relax(work_of_loads(discretization_, progress_), kStepsFromAverage, progress_);
     minimize_stream_function(discretization_, pair_->v, clearance, pair_->pressure, progress_);
     pair_->of_balance = stream_function_of_balance(discretization_, progress_);
   }

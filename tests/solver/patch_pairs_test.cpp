@@ -299,7 +299,7 @@ TEST(Relaxation, TendsToTheLeastEnergyWhereTheModulusVaries) {
     for (const int edge : part.edges) v.hold(mesh, edge);
   Observer observer;
   Progress progress(observer, std::nullopt);
-  const Eigen::VectorXd work = work_of_loads(discretization);
+  const Eigen::VectorXd work = work_of_loads(discretization, progress);
   relax(discretization, stiffness_of, v, work, 500, progress);
   LawField<1> law(problem.material);
   const Eigen::VectorXd reaction = work_of_stress(discretization, [&](int t) {

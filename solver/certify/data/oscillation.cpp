@@ -5,6 +5,7 @@
 
 #include "certify/data/jump_oscillation.hpp"
 #include "certify/data/linear_remainder.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -63,10 +64,12 @@ Eigen::VectorXd oscillations(const Discretization& discrete, const Eigen::Vector
                              const std::vector<int>& owners, Progress& progress) {
   const auto of = discrete.spaces().components == 1 ? oscillation<1> : oscillation<2>;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(discrete.triangles());
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    progress.check_in(t);
-    if (owners[t] >= 0) all[t] = of(discrete, t, of_load[t], pressure, laws);
-  }
+  in_parts(discrete.triangles(), progress, [&](Part part, Progress& own) {
+    for (int t = part.begin; t < part.end; ++t) {
+      own.check_in(t);
+      if (owners[t] >= 0) all[t] = of(discrete, t, of_load[t], pressure, laws);
+    }
+  });
   return all;
 }
 

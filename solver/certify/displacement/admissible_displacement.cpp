@@ -16,24 +16,24 @@ const Field& gap_on(const Discretization& discrete, const ContactEdge& contact) 
   return condition_on<Contact>(discrete.problem, part)->gap;
 }
 
-AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
+AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, Eigen::MatrixXd points,
                                                const Eigen::VectorXd& coupling)
     : discrete_(discrete),
       components_(discrete.spaces().components),
       clearance_(discrete.clearance.clearance(coupling.tail(discrete.traces.contact_unknowns()))),
-      points_(displacement_at_corners(discrete, solution)),
+      points_(std::move(points)),
       scale_(points_.cwiseAbs().maxCoeff()) {}
 
 AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
                                                const Eigen::VectorXd& coupling, Progress& progress)
-    : AdmissibleDisplacement(discrete, solution, coupling) {
+    : AdmissibleDisplacement(discrete, displacement_at_corners(discrete, solution, progress), coupling) {
   for (std::size_t i = 0; i < discrete.clearance.rows.size(); ++i)
     clearance_[i] += discrete.clearance.rows[i].beyond;
   constrain_points();
   constrain_to_gap();
   admit_points();
   if (components_ == 2) follow_traces();
-  set_middles(coupling);
+  set_middles(coupling, progress);
   meet_supports();
   find_followed_gaps(progress);
   CellBudget budget{kCellsOfGaps, &progress};
@@ -206,11 +206,18 @@ void AdmissibleDisplacement::refuse_point(int point) {
 }
 
 /// The mean of v_h over each edge is that of m.
-void AdmissibleDisplacement::set_middles(const Eigen::VectorXd& coupling) {
+void AdmissibleDisplacement::set_middles(const Eigen::VectorXd& coupling, Progress& progress) {
+  middles_.resize(components_, discrete_.mesh.edges.size());
+  in_parts(discrete_.triangles(), progress,
+           [&](Part part, Progress& own) { set_middles(coupling, part, own); });
+}
+
+/// Each edge by the first of its triangles.
+void AdmissibleDisplacement::set_middles(const Eigen::VectorXd& coupling, Part part, Progress& progress) {
   const Mesh& mesh = discrete_.mesh;
   const int per_edge = discrete_.spaces().traces_per_edge(), functions = per_edge / components_;
-  middles_.resize(components_, mesh.edges.size());
-  for (int t = 0; t < discrete_.triangles(); ++t) {
+  for (int t = part.begin; t < part.end; ++t) {
+    progress.check_in(t);
     const LocalVector traces = discrete_.traces.values(t, coupling);
     for (int e = 0; e < 3; ++e) {
       const int edge = mesh.triangle_edges[t][e];

@@ -10,7 +10,7 @@
 #include "certify/local_fields.hpp"
 #include "fem/discretization.hpp"
 #include "fem/edge_pieces.hpp"
-#include "progress/progress.hpp"
+#include "progress/in_parts.hpp"
 #include "result/solution.hpp"
 
 namespace signorini {
@@ -104,7 +104,7 @@ class AdmissibleDisplacement {
   /// Of all edges on which a gap is enclosed.
   static constexpr int kCellsOfGaps = 20'000;
 
-  AdmissibleDisplacement(const Discretization& discrete, const Solution& solution,
+  AdmissibleDisplacement(const Discretization& discrete, Eigen::MatrixXd points,
                          const Eigen::VectorXd& coupling);
 
   /// What is lifted from the edge, or null; the edge runs from its first to its second point.
@@ -112,7 +112,8 @@ class AdmissibleDisplacement {
 
   using Values = std::function<Eigen::VectorXd(double s)>;
 
-  void set_middles(const Eigen::VectorXd& coupling);
+  void set_middles(const Eigen::VectorXd& coupling, Progress& progress);
+  void set_middles(const Eigen::VectorXd& coupling, Part part, Progress& progress);
   void constrain_points();
   void fix_points(int edge, const Fixed& fixed);
   void constrain(int point, PointConstraint constraint);

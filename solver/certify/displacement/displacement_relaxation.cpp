@@ -10,6 +10,7 @@
 #include "certify/tensor.hpp"
 #include "fem/per_shape.hpp"
 #include "fem/small_matrices.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -181,33 +182,41 @@ class Relaxation {
     }
     forms_.matrix_of.reserve(discrete_.triangles());
     forms_.slopes.reserve(discrete_.triangles());
+    in_parts(
+        discrete_.triangles(), progress, [this](Part part, Progress& own) { return forms_on(part, own); },
+        [this](TriangleForms own) { forms_.append(std::move(own)); });
+  }
+
+  TriangleForms forms_on(Part part, Progress& progress) {
+    TriangleForms forms;
     LawField<2> law(discrete_.problem.material);
     const bool is_constant = discrete_.element.has_constant_material();
     PerShape<Shape> shapes(discrete_);
-    for (int t = 0; t < discrete_.triangles(); ++t) {
+    for (int t = part.begin; t < part.end; ++t) {
       progress.check_in(t);
       Shape& shape =
           shapes(t, [&] { return Shape{condensed(AffineMap(mesh_.corners(t)), is_constant, law)}; });
-      add(t, shape);
+      add(t, shape, forms);
     }
+    return forms;
   }
 
-  void add(int t, Shape& shape) {
+  void add(int t, Shape& shape, TriangleForms& forms) {
     const Condensed& own = shape.own;
     const std::array<int, 6> nodes = nodes_of(t);
     FormVector v;
     for (int k = 0; k < 6; ++k) v.segment<2>(2 * k) = value(nodes[k]);
     FormVector slope = own.stiffness * v - work_of_load(discrete_, t, own) - work_of_traction(discrete_, t);
     if (std::ranges::all_of(nodes, [&](int node) { return freedom_[node].normal.isZero(0); })) {
-      if (shape.number < 0) shape.number = forms_.keep(own.stiffness);
-      forms_.matrix_of.push_back(shape.number);
+      if (shape.number < 0) shape.number = forms.keep(own.stiffness);
+      forms.matrix_of.push_back(shape.number);
     } else {
       Matrix turn = Matrix::Zero();
       for (int k = 0; k < 6; ++k) turn.block<2, 2>(2 * k, 2 * k) = axes(nodes[k]);
       slope = turn.transpose() * slope;
-      forms_.matrix_of.push_back(forms_.keep(turn.transpose() * own.stiffness * turn, shape.turned));
+      forms.matrix_of.push_back(forms.keep(turn.transpose() * own.stiffness * turn, shape.turned));
     }
-    forms_.slopes.push_back(slope);
+    forms.slopes.push_back(slope);
   }
 
   const Discretization& discrete_;

@@ -4,6 +4,7 @@
 
 #include "certify/displacement/admissible_displacement.hpp"
 #include "certify/displacement/largest_coefficient.hpp"
+#include "certify/displacement/recovered_displacement.hpp"
 
 namespace signorini {
 namespace {
@@ -17,12 +18,12 @@ AdmissibleDisplacement::AdmissibleDisplacement(const Discretization& discrete, c
                                                const Eigen::VectorXd& coupling,
                                                const AdmissibleDisplacement& base, double factor,
                                                Progress& progress)
-    : AdmissibleDisplacement(discrete, solution, coupling) {
+    : AdmissibleDisplacement(discrete, displacement_at_corners(discrete, solution, progress), coupling) {
   beside_ = {&base, factor};
   constrain_points();
   constrain_beside_base();
   admit_points();
-  set_middles(coupling);
+  set_middles(coupling, progress);
   meet_supports();
   CellBudget budget{kCellsOfGaps, &progress};
   const std::vector<ContactEdge>& edges = discrete.clearance.edges;

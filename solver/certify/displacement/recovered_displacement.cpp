@@ -1,6 +1,7 @@
 #include "certify/displacement/recovered_displacement.hpp"
 
 #include "certify/local_fields.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -93,18 +94,35 @@ class RecoveredDisplacement {
 /// Stiff triangles count for more: to strain them by what a soft one beside them is off by would cost the
 /// more.
 template <int D>
-Eigen::MatrixXd average(const Discretization& discrete, const Solution& solution) {
-  RecoveredDisplacement<D> recovered(discrete, solution);
+Eigen::MatrixXd average(const Discretization& discrete, const Solution& solution, Progress& progress) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(D, discrete.mesh.points.size());
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(discrete.mesh.points.size());
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    const Eigen::Matrix<double, D, 3> corners = recovered.at_corners(t);
-    for (int z = 0; z < 3; ++z) {
-      const int point = discrete.mesh.triangles[t][z];
-      values.col(point) += recovered.stiffness() * corners.col(z);
-      weights[point] += recovered.stiffness();
+  struct Weighted {
+    Part part;
+    Eigen::Matrix<double, D, Eigen::Dynamic> corners{D, 3 * (part.end - part.begin)};
+    Eigen::VectorXd stiffness{part.end - part.begin};
+  };
+  const auto find = [&](Part part, Progress& own) {
+    RecoveredDisplacement<D> recovered(discrete, solution);
+    Weighted found{part};
+    for (int t = part.begin; t < part.end; ++t) {
+      own.check_in(t);
+      const Eigen::Matrix<double, D, 3> corners = recovered.at_corners(t);
+      const Eigen::Index i = t - part.begin;
+      found.stiffness[i] = recovered.stiffness();
+      found.corners.template middleCols<3>(3 * i) = recovered.stiffness() * corners;
     }
-  }
+    return found;
+  };
+  in_parts(discrete.triangles(), progress, find, [&](const Weighted& found) {
+    for (int t = found.part.begin; t < found.part.end; ++t)
+      for (int z = 0; z < 3; ++z) {
+        const int point = discrete.mesh.triangles[t][z];
+        const Eigen::Index i = t - found.part.begin;
+        values.col(point) += found.corners.col(3 * i + z);
+        weights[point] += found.stiffness[i];
+      }
+  });
   // Points without a triangle have nothing to average.
   for (Eigen::Index p = 0; p < values.cols(); ++p)
     if (weights[p] > 0) values.col(p) /= weights[p];
@@ -113,8 +131,10 @@ Eigen::MatrixXd average(const Discretization& discrete, const Solution& solution
 
 }  // namespace
 
-Eigen::MatrixXd displacement_at_corners(const Discretization& discrete, const Solution& solution) {
-  return discrete.spaces().components == 1 ? average<1>(discrete, solution) : average<2>(discrete, solution);
+Eigen::MatrixXd displacement_at_corners(const Discretization& discrete, const Solution& solution,
+                                        Progress& progress) {
+  return discrete.spaces().components == 1 ? average<1>(discrete, solution, progress)
+                                           : average<2>(discrete, solution, progress);
 }
 
 }  // namespace signorini

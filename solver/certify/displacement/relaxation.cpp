@@ -6,6 +6,7 @@
 #include "certify/local_fields.hpp"
 #include "certify/tensor.hpp"
 #include "fem/lagrange.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -29,14 +30,39 @@ struct Products {
   LocalSquare xx = LocalSquare::Zero(), xy = LocalSquare::Zero(), yy = LocalSquare::Zero();
 };
 
+std::array<int, 6> nodes_of(const Mesh& mesh, int t) {
+  const int points = static_cast<int>(mesh.points.size());
+  const auto& [a, b, c] = mesh.triangles[t];
+  const auto& [d, e, f] = mesh.triangle_edges[t];
+  return {a, b, c, points + d, points + e, points + f};
+}
+
 template <typename Visit>
 void for_triangles(const Mesh& mesh, const Visit& visit) {
-  const int points = static_cast<int>(mesh.points.size());
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const auto& [d, e, f] = mesh.triangle_edges[t];
-    visit(t, std::array{a, b, c, points + d, points + e, points + f});
-  }
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) visit(t, nodes_of(mesh, t));
+}
+
+/// Σ over the triangles of what each adds at its nodes.
+template <typename AtNodes>
+void add_at_nodes(const Mesh& mesh, const AtNodes& at_nodes, Eigen::VectorXd& sum, Progress& progress) {
+  struct Found {
+    Part part;
+    Eigen::Matrix<double, 6, Eigen::Dynamic> values{6, part.end - part.begin};
+  };
+  const auto find = [&](Part part, Progress& own) {
+    Found found{part};
+    for (int t = part.begin; t < part.end; ++t) {
+      own.check_in(t);
+      found.values.col(t - part.begin) = at_nodes(t, nodes_of(mesh, t));
+    }
+    return found;
+  };
+  in_parts(static_cast<int>(mesh.triangles.size()), progress, find, [&](const Found& found) {
+    for (int t = found.part.begin; t < found.part.end; ++t) {
+      const std::array<int, 6> nodes = nodes_of(mesh, t);
+      for (int k = 0; k < 6; ++k) sum[nodes[k]] += found.values(k, t - found.part.begin);
+    }
+  });
 }
 
 Eigen::Index functions(const Mesh& mesh) {
@@ -49,18 +75,18 @@ using Modulus = Eigen::Matrix2d (*)(const Law<1>&);
 /// at the corners times the hats.
 class Curvature {
  public:
-  Curvature(const Discretization& discrete, Modulus of) : mesh_(discrete.mesh) {
+  Curvature(const Discretization& discrete, Modulus of, Progress& progress) : mesh_(discrete.mesh) {
     if (discrete.element.has_constant_material())
       products_.emplace_back([](const Point&) { return 1.; });
     else
       for (int z = 0; z < 3; ++z)
         products_.emplace_back([z](const Point& x) { return triangle_basis(1, x)[z]; });
-    take_moduli(discrete, of);
+    take_moduli(discrete, of, progress);
   }
 
-  void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+  void apply(const Eigen::VectorXd& v, Eigen::VectorXd& product, Progress& progress) const {
     product.setZero();
-    for_triangles(mesh_, [&](int t, const std::array<int, 6>& nodes) {
+    const auto at_nodes = [&](int t, const std::array<int, 6>& nodes) {
       Local own, change = Local::Zero();
       for (int k = 0; k < 6; ++k) own[k] = v[nodes[k]];
       for (std::size_t i = 0; i < products_.size(); ++i) {
@@ -68,8 +94,9 @@ class Curvature {
         change +=
             e[0] * (products_[i].xx * own) + e[1] * (products_[i].xy * own) + e[2] * (products_[i].yy * own);
       }
-      for (int k = 0; k < 6; ++k) product[nodes[k]] += change[k];
-    });
+      return change;
+    };
+    add_at_nodes(mesh_, at_nodes, product, progress);
   }
 
   Eigen::VectorXd diagonal() const {
@@ -91,12 +118,18 @@ class Curvature {
     return moduli_.col(t).segment<3>(3 * static_cast<Eigen::Index>(i));
   }
 
-  void take_moduli(const Discretization& discrete, Modulus of) {
+  void take_moduli(const Discretization& discrete, Modulus of, Progress& progress) {
+    moduli_.resize(products_.size() == 1 ? 3 : 9, discrete.triangles());
+    in_parts(discrete.triangles(), progress,
+             [&](Part part, Progress& own) { take_moduli(discrete, of, part, own); });
+  }
+
+  void take_moduli(const Discretization& discrete, Modulus of, Part part, Progress& progress) {
     LawField<1> law(discrete.problem.material);
     const bool constant = products_.size() == 1;
     const auto kept = [](const Eigen::Matrix2d& e) { return Eigen::Vector3d(e(0, 0), e(0, 1), e(1, 1)); };
-    moduli_ = Eigen::MatrixXd::Zero(constant ? 3 : 9, discrete.triangles());
-    for (int t = 0; t < discrete.triangles(); ++t) {
+    for (int t = part.begin; t < part.end; ++t) {
+      progress.check_in(t);
       const AffineMap map(mesh_.corners(t));
       const Eigen::Matrix2d inverse = map.jacobian.inverse();
       const auto at = [&](const Point& x) -> Eigen::Matrix2d {
@@ -146,14 +179,14 @@ void add_work_of_traction(const Discretization& discrete, Eigen::VectorXd& work)
 
 }  // namespace
 
-Eigen::VectorXd work_of_loads(const Discretization& discrete) {
+Eigen::VectorXd work_of_loads(const Discretization& discrete, Progress& progress) {
   Eigen::VectorXd work = Eigen::VectorXd::Zero(functions(discrete.mesh));
   const Eigen::Matrix<double, 6, 3> hats = products_with_hats();
-  for_triangles(discrete.mesh, [&](int t, const std::array<int, 6>& nodes) {
+  const auto at_nodes = [&](int t, const std::array<int, 6>&) -> Local {
     const double twice_area = AffineMap(discrete.mesh.corners(t)).determinant;
-    const Local own = twice_area * hats * discrete_load<1>(discrete, t).transpose();
-    for (int k = 0; k < 6; ++k) work[nodes[k]] += own[k];
-  });
+    return twice_area * hats * discrete_load<1>(discrete, t).transpose();
+  };
+  add_at_nodes(discrete.mesh, at_nodes, work, progress);
   add_work_of_traction(discrete, work);
   return work;
 }
@@ -202,7 +235,7 @@ Eigen::Matrix2d turned_compliance_of(const Law<1>& law) {
 
 void relax(const Discretization& discrete, Modulus modulus, QuadraticValues& values,
            const Eigen::VectorXd& work, int steps, Progress& progress) {
-  const Curvature curvature(discrete, modulus);
+  const Curvature curvature(discrete, modulus, progress);
   const Eigen::Index points = values.points.size();
   Eigen::VectorXd v(work.size());
   v << values.points, values.middles;
@@ -214,13 +247,13 @@ void relax(const Discretization& discrete, Modulus modulus, QuadraticValues& val
   }
 
   Eigen::VectorXd product(v.size()), residual = work;
-  curvature.apply(v, product);
+  curvature.apply(v, product, progress);
   residual -= product;
   Eigen::VectorXd direction = scale.cwiseProduct(residual);
   double size = residual.dot(direction);
   for (int step = 0; step < steps && size > 0; ++step) {
     progress.check();
-    curvature.apply(direction, product);
+    curvature.apply(direction, product, progress);
     const double length = size / direction.dot(product);
     v += length * direction;
     residual -= length * product;

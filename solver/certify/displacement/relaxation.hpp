@@ -22,7 +22,7 @@ struct QuadraticValues {
 
 /// The work on each of the quadratic functions, first of the points, then of the middles: of load and
 /// traction, (Πf, φ) + <t, φ>, and of a stress, (τ, ∇φ).
-Eigen::VectorXd work_of_loads(const Discretization& discrete);
+Eigen::VectorXd work_of_loads(const Discretization& discrete, Progress& progress);
 Eigen::VectorXd work_of_stress(const Discretization& discrete, const StressField& tau);
 
 /// The steps after which hardly anything is left of what an average has for error: that oscillates from

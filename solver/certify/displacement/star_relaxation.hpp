@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
+#include <iterator>
 #include <vector>
 
 #include <Eigen/Core>
@@ -45,6 +47,14 @@ struct TriangleForms {
     return number_of_alike(
         matrix, known, [this](int own) -> const Matrix& { return matrices[own]; },
         [&] { return keep(matrix); });
+  }
+
+  /// Adds those of triangles that come behind.
+  void append(TriangleForms&& behind) {
+    const int first = static_cast<int>(matrices.size());
+    std::ranges::move(behind.matrices, std::back_inserter(matrices));
+    for (const int own : behind.matrix_of) matrix_of.push_back(first + own);
+    slopes.insert(slopes.end(), behind.slopes.begin(), behind.slopes.end());
   }
 
   /// The first of the unknowns of a point, of an edge.

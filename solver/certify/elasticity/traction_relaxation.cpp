@@ -5,6 +5,7 @@
 #include "certify/elasticity/johnson_mercier_operators.hpp"
 #include "fem/per_shape.hpp"
 #include "fem/small_matrices.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -139,15 +140,13 @@ TractionShape traction_shape_of(const Discretization& discrete, int t, LawField<
   return {all.leftCols<kMacroData>() * data_of_linear() * airy, all, map.jacobian.inverse()};
 }
 
-TriangleForms forms_of(const Discretization& discrete, const Eigen::MatrixXd& stress,
-                       const EdgeTractions& tractions, Progress& progress) {
-  TriangleForms forms{3, 1, true, {}, {}, {}, {}};
-  forms.matrix_of.reserve(discrete.triangles());
-  forms.slopes.reserve(discrete.triangles());
+TriangleForms forms_on(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                       const EdgeTractions& tractions, Part part, Progress& progress) {
+  TriangleForms forms;
   LawField<2> law(discrete.problem.material);
   PerShape<TractionShape> shapes(discrete);
   Eigen::VectorXd given(kMacroData + stress.rows());
-  for (int t = 0; t < discrete.triangles(); ++t) {
+  for (int t = part.begin; t < part.end; ++t) {
     progress.check_in(t);
     TractionShape& shape = shapes(t, [&] { return traction_shape_of(discrete, t, law); });
     if (shape.number < 0) shape.number = forms.keep(shape.matrix);
@@ -156,6 +155,18 @@ TriangleForms forms_of(const Discretization& discrete, const Eigen::MatrixXd& st
     forms.matrix_of.push_back(shape.number);
     forms.slopes.push_back(shape.slope * given);
   }
+  return forms;
+}
+
+TriangleForms forms_of(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                       const EdgeTractions& tractions, Progress& progress) {
+  TriangleForms forms{3, 1, true, {}, {}, {}, {}};
+  forms.matrix_of.reserve(discrete.triangles());
+  forms.slopes.reserve(discrete.triangles());
+  in_parts(
+      discrete.triangles(), progress,
+      [&](Part part, Progress& own) { return forms_on(discrete, stress, tractions, part, own); },
+      [&](TriangleForms own) { forms.append(std::move(own)); });
   return forms;
 }
 

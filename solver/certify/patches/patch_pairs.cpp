@@ -90,7 +90,7 @@ bool PatchPairs::are_admissible() const {
 AdmissiblePair PatchPairs::first_pair(Progress& progress) const {
   AdmissiblePair pair{{held_.discretization(), held_.solution(), held_.coupling(), progress},
                       {loaded_.discretization(), loaded_.solution().stress, loaded_.clearance()}};
-  pair.v.relax(work_of_loads(held_.discretization()), kStepsFromAverage, progress);
+  pair.v.relax(work_of_loads(held_.discretization(), progress), kStepsFromAverage, progress);
   minimize_stream_function(loaded_.discretization(), pair.v, loaded_.clearance(), pair.pressure, progress);
   return pair;
 }

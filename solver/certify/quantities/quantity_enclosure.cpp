@@ -11,6 +11,7 @@
 #include "certify/rounding.hpp"
 #include "certify/traction_work.hpp"
 #include "certify/triangle_sums.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -45,13 +46,21 @@ PairSums QuantityEnclosure::sums_of(const std::vector<Term>& terms) const {
       all.push_back({pair, *own.pair.tractions});
   }
   const Discretization& discrete = base_.discrete;
-  FieldSums fields(discrete, std::move(all), norms_);
-  LawField<D> law(discrete.problem.material);
+  const FieldSums fields(discrete, std::move(all), norms_);
   PairSums sums(discrete.triangles());
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    progress_.check_in(t);
-    sums.add(t, fields(t, law, laws_));
-  }
+  const auto find = [&](Part part, Progress& own_progress) {
+    PairTotals totals;
+    FieldSums on(fields);
+    LawField<D> law(discrete.problem.material);
+    for (int t = part.begin; t < part.end; ++t) {
+      own_progress.check_in(t);
+      const TriangleSums own = on(t, law, laws_);
+      sums.gaps[t] = gap_from_above(own);
+      totals.add(own);
+    }
+    return totals;
+  };
+  in_parts(discrete.triangles(), progress_, find, [&](const PairTotals& totals) { sums += totals; });
   return sums;
 }
 

@@ -80,13 +80,13 @@ double Extensions::Hat::operator()(const Point& x) const {
 
 Extensions::Extensions(const Discretization& discrete, const LawOnMesh& laws, Factorization by,
                        Progress& progress, std::shared_ptr<const ElementTree> tree)
-    : discrete_(discrete), progress_(progress), triangles_(discrete.mesh) {
+    : discrete_(discrete), triangles_(discrete.mesh) {
   stiffness_.tree = std::move(tree);
   hold_parts();
   if (components() == 1)
-    add_elements<1>(laws);
+    add_elements<1>(laws, progress);
   else
-    add_elements<2>(laws);
+    add_elements<2>(laws, progress);
   if (stiffness_.size == 0) return;
   if (!stiffness_.tree)
     stiffness_.tree = tree_by_edges(stiffness_.centres, discrete.mesh.triangle_edges, progress);
@@ -139,7 +139,7 @@ Eigen::MatrixXd Extensions::turned(int t, Eigen::MatrixXd element) const {
 }
 
 template <int D>
-void Extensions::add_elements(const LawOnMesh& laws) {
+void Extensions::add_elements(const LawOnMesh& laws, Progress& progress) {
   const Mesh& mesh = discrete_.mesh;
   // Of a point that is held along one direction the second unknown is free, of any other that is held none.
   std::vector<bool> is_turned(mesh.points.size(), false);
@@ -170,7 +170,7 @@ void Extensions::add_elements(const LawOnMesh& laws) {
     return matrix;
   };
   for (int t = 0; t < discrete_.triangles(); ++t) {
-    progress_.check_in(t);
+    progress.check_in(t);
     const bool turns = std::ranges::any_of(mesh.triangles[t], [&](int point) { return is_turned[point]; });
     is_turned_.push_back(turns);
     OfShape& numbers = shapes(t, [] { return OfShape(); });
@@ -242,11 +242,11 @@ Eigen::Matrix<double, 3 * D, 1> Extensions::local(int t, const Eigen::MatrixXd& 
 
 /// Finds what is free.
 template <int D>
-void Extensions::complete(Eigen::MatrixXd& w) const {
+void Extensions::complete(Eigen::MatrixXd& w, Progress& progress) const {
   if (!factor_) return;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(stiffness_.size);
   for (int t = 0; t < discrete_.triangles(); ++t) {
-    progress_.check_in(t);
+    progress.check_in(t);
     const auto own = local<D>(t, w);
     if (own.isZero(0)) continue;
     const Eigen::Map<const Eigen::Matrix<double, 3 * D, 3 * D>> matrix(stiffness_.matrix(t));
@@ -255,7 +255,7 @@ void Extensions::complete(Eigen::MatrixXd& w) const {
       if (const int unknown = stiffness_.unknowns_of(t)[i]; unknown >= 0) x[unknown] -= forces[i];
   }
   Factor::Workspace workspace;
-  factor_->solve(x, workspace, progress_);
+  factor_->solve(x, workspace, progress);
   for (std::size_t i = 0; i < unknowns_.size(); ++i)
     if (unknowns_[i] >= 0) w.data()[i] = x[unknowns_[i]];
 }
@@ -287,15 +287,16 @@ std::vector<Extension::Clash> Extensions::clashes(const std::vector<int>& moved,
   return found;
 }
 
-Extension Extensions::operator()(const std::vector<int>& moved, const Given& given) const {
+Extension Extensions::operator()(const std::vector<int>& moved, const Given& given,
+                                 Progress& progress) const {
   Extension own;
   own.at_points = held(moved, given, own.clashes);
   if (components() == 1)
-    complete<1>(own.at_points);
+    complete<1>(own.at_points, progress);
   else
-    complete<2>(own.at_points);
+    complete<2>(own.at_points, progress);
   for (int t = 0; t < discrete_.triangles(); ++t) {
-    progress_.check_in(t);
+    progress.check_in(t);
     own.energy_square += energy_square(t, own.at_points);
   }
   turn_back(own.at_points);

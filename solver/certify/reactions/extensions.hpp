@@ -41,7 +41,7 @@ class Extensions {
   /// What is given at a point of the mesh along the direction that a support holds there.
   using Given = std::function<double(int point, const Vector& direction)>;
   /// What is given on the parts that move, and 0 on all other supports.
-  Extension operator()(const std::vector<int>& moved, const Given& given) const;
+  Extension operator()(const std::vector<int>& moved, const Given& given, Progress& progress) const;
 
   /// Where it clashes, without a solve.
   std::vector<Extension::Clash> clashes(const std::vector<int>& moved, const Given& given) const;
@@ -70,7 +70,7 @@ class Extensions {
   void hold_parts();
   static const Hold* other_direction(const std::vector<Hold>& holds);
   template <int D>
-  void add_elements(const LawOnMesh& laws);
+  void add_elements(const LawOnMesh& laws, Progress& progress);
   Eigen::MatrixXd turned(int t, Eigen::MatrixXd element) const;
   std::optional<Vector> met(int point, const std::vector<int>& moved, const Given& given) const;
   Eigen::MatrixXd held(const std::vector<int>& moved, const Given& given,
@@ -78,14 +78,13 @@ class Extensions {
   template <int D>
   Eigen::Matrix<double, 3 * D, 1> local(int t, const Eigen::MatrixXd& w) const;
   template <int D>
-  void complete(Eigen::MatrixXd& w) const;
+  void complete(Eigen::MatrixXd& w, Progress& progress) const;
   template <int D>
   double energy_square(int t, const Eigen::MatrixXd& w) const;
   double energy_square(int t, const Eigen::MatrixXd& w) const;
   void turn_back(Eigen::MatrixXd& w) const;
 
   const Discretization& discrete_;
-  Progress& progress_;
   const TrianglesAtPoints triangles_;
   std::vector<int> supports_;
   std::map<int, std::vector<Hold>> holds_;  ///< by points

@@ -11,6 +11,7 @@
 #include "fem/cubature.hpp"
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
@@ -38,13 +39,12 @@ Reactions::Reactions(const Discretization& discrete, const Solution& solution, c
     : discrete_(discrete),
       solution_(solution),
       extensions_(extensions),
-      progress_(progress),
       work_(Eigen::MatrixXd::Zero(components(), static_cast<Eigen::Index>(discrete.mesh.points.size()))),
       size_(work_) {
   if (components() == 1)
-    add_stress<1>();
+    add_stress<1>(progress);
   else
-    add_stress<2>();
+    add_stress<2>(progress);
   for (int t = 0; t < discrete.triangles(); ++t) {
     add_load(t);
     if (const double work = discrete.body[t].uncertain_work; work > 0)
@@ -67,12 +67,12 @@ void Reactions::add(int point, int component, double work) {
 
 /// The strain of a hat is constant, so that the mean of σ_h counts, and of it what is symmetric.
 template <int D>
-void Reactions::add_stress() {
+void Reactions::add_stress(Progress& progress) {
   std::vector<Point> points;
   for (const auto& [point, weight] : rule_of_degree(kStress)) points.push_back(point);
   const StressValues<D> values(discrete_.spaces(), points);
   for (int t = 0; t < discrete_.triangles(); ++t) {
-    progress_.check_in(t);
+    progress.check_in(t);
     const AffineMap map(discrete_.mesh.corners(t));
     Tensor<D> stress = Tensor<D>::Zero();
     for (std::size_t q = 0; q < points.size(); ++q)
@@ -136,7 +136,8 @@ std::vector<SupportMotion> Reactions::motions() const {
   return {{Vector::UnitX(), 0}, {Vector::UnitY(), 0}, {Vector::Zero(), 1}};
 }
 
-CertifiedSupport Reactions::of(const std::vector<int>& parts, std::vector<Extension::Clash>& clashes) const {
+CertifiedSupport Reactions::of(const std::vector<int>& parts, std::vector<Extension::Clash>& clashes,
+                               Progress& progress) const {
   CertifiedSupport own;
   for (const int part : parts) own.parts.push_back(discrete_.mesh.boundary[part].name);
   const std::vector<SupportMotion> all = motions();
@@ -151,7 +152,7 @@ CertifiedSupport Reactions::of(const std::vector<int>& parts, std::vector<Extens
     clashes.insert(clashes.end(), own_clashes.begin(), own_clashes.end());
     const bool is_bounded = own_clashes.empty();
     const EnclosedNumber number =
-        is_bounded ? enclose(extensions_(parts, motion), value) : EnclosedNumber{value, value};
+        is_bounded ? enclose(extensions_(parts, motion, progress), value) : EnclosedNumber{value, value};
     if (i < 2)
       own.force.push_back(number);
     else if (is_bounded)
@@ -162,13 +163,14 @@ CertifiedSupport Reactions::of(const std::vector<int>& parts, std::vector<Extens
 
 /// ∫ p over a contact part. Where another support contradicts, the weight falls to 0 in the last edge: that
 /// is a bound from below.
-EnclosedNumber Reactions::pressure_force(int part) const {
+EnclosedNumber Reactions::pressure_force(int part, Progress& progress) const {
   const auto& rows =
       *std::ranges::find(solution_.contact, discrete_.mesh.boundary[part].name, &ContactPart::name);
   double value = 0;
   for (std::size_t i = 0; i < rows.pressure.size(); ++i) value += rows.pressure[i] * rows.weight[i];
   const double sign = components() == 1 ? 1 : -1;
-  const Extension extension = extensions_({part}, [sign](int, const Vector&) { return sign; });
+  const Extension extension = extensions_(
+      {part}, [sign](int, const Vector&) { return sign; }, progress);
   EnclosedNumber own = enclose(extension, value);
   own.lower = std::max(0., own.lower);
   if (!extension.clashes.empty()) own.upper = std::numeric_limits<double>::infinity();
@@ -280,25 +282,33 @@ void join(const std::vector<Extension::Clash>& clashes, std::vector<std::vector<
 
 }  // namespace
 
-std::vector<CertifiedSupport> Reactions::all(std::vector<std::string>& unmet) const {
-  std::vector<CertifiedSupport> all;
+CertifiedSupport Reactions::of(int part, std::vector<Extension::Clash>& clashes, Progress& progress) const {
+  CertifiedSupport own = of(std::vector{part}, clashes, progress);
+  if (!condition_on<Contact>(discrete_.problem, discrete_.mesh.boundary[part].name)) return own;
+  // What presses a membrane is what supports it.
+  const EnclosedNumber& force = own.force[0];
+  own.pressure_force = components() == 1 && force.is_bounded()
+                           ? enclosed_number(force.value, std::max(0., force.lower), force.upper)
+                           : pressure_force(part, progress);
+  own.stretches = stretches(part);
+  return own;
+}
+
+std::vector<CertifiedSupport> Reactions::all(std::vector<std::string>& unmet, Progress& progress) const {
+  const std::vector<int>& supports = extensions_.supports();
+  std::vector<CertifiedSupport> all(supports.size());
+  std::vector<std::vector<Extension::Clash>> clashes_of(supports.size());
+  side_by_side(static_cast<int>(supports.size()), progress,
+               [&](int i, Progress& its) { all[i] = of(supports[i], clashes_of[i], its); });
   std::vector<std::vector<int>> groups;
   std::vector<Extension::Clash> clashes;
-  for (const int part : extensions_.supports()) {
-    all.push_back(of({part}, clashes));
-    if (condition_on<Contact>(discrete_.problem, discrete_.mesh.boundary[part].name)) {
-      // What presses a membrane is what supports it.
-      const EnclosedNumber& force = all.back().force[0];
-      all.back().pressure_force = components() == 1 && force.is_bounded()
-                                      ? enclosed_number(force.value, std::max(0., force.lower), force.upper)
-                                      : pressure_force(part);
-      all.back().stretches = stretches(part);
-    }
-    groups.push_back({part});
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    groups.push_back({supports[i]});
+    clashes.insert(clashes.end(), clashes_of[i].begin(), clashes_of[i].end());
   }
   join(clashes, groups);
   for (const std::vector<int>& parts : groups)
-    if (parts.size() > 1) all.push_back(of(parts, clashes));
+    if (parts.size() > 1) all.push_back(of(parts, clashes, progress));
   std::set<std::array<int, 2>> told;
   for (const Extension::Clash& clash : clashes)
     if (told.insert({std::min(clash.part, clash.other), std::max(clash.part, clash.other)}).second)

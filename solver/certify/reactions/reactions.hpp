@@ -20,20 +20,22 @@ class Reactions {
 
   /// Of each support, then of those together that clash in a point. Adds to `unmet` why a number is not
   /// bounded.
-  std::vector<CertifiedSupport> all(std::vector<std::string>& unmet) const;
+  std::vector<CertifiedSupport> all(std::vector<std::string>& unmet, Progress& progress) const;
 
  private:
   int components() const { return discrete_.spaces().components; }
   void add(int point, int component, double work);
   template <int D>
-  void add_stress();
+  void add_stress(Progress& progress);
   void add_load(int t);
   void add_traction(int edge);
   double uncertain_work(const Eigen::MatrixXd& at_points) const;
   EnclosedNumber enclose(const Extension& extension, double value) const;
   std::vector<SupportMotion> motions() const;
-  CertifiedSupport of(const std::vector<int>& parts, std::vector<Extension::Clash>& clashes) const;
-  EnclosedNumber pressure_force(int part) const;
+  CertifiedSupport of(int part, std::vector<Extension::Clash>& clashes, Progress& progress) const;
+  CertifiedSupport of(const std::vector<int>& parts, std::vector<Extension::Clash>& clashes,
+                      Progress& progress) const;
+  EnclosedNumber pressure_force(int part, Progress& progress) const;
   EnclosedNumber force_under(int part, Extensions::Hat hat,
                              const std::function<double(int point)>& weight) const;
   CertifiedStretch stretch(int part, std::span<const std::array<int, 2>> ways,
@@ -44,7 +46,6 @@ class Reactions {
   const Discretization& discrete_;
   const Solution& solution_;
   const Extensions& extensions_;
-  Progress& progress_;
   /// (σ_h, ε(φ)) − (f, φ) − <t, φ> for the hats φ of the points, and all its terms with one sign.
   Eigen::MatrixXd work_, size_;
   /// Of the loads, by triangles and edges; those that are known are left out.
