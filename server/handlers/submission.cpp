@@ -88,9 +88,9 @@ NewJob new_job(Service& service, const Request& request, Intake intake) {
   job.created = std::chrono::system_clock::now();
   job.problem = std::make_shared<const std::string>(std::move(intake.text));
   job.predicted_memory = intake.memory();
-  job.operator_mark = operator_mark(intake.request.problem.operator_key);
   if (request.trace) job.trace = request.trace->id;
   job.owner = request.identity.name;
+  job.operator_mark = operator_mark(operator_key_of(job.owner, intake.request.problem.operator_key));
   job.share = request.identity.share;
   return job;
 }

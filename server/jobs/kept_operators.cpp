@@ -4,6 +4,11 @@
 
 namespace signorini::server {
 
+/// No name has a line break.
+std::string operator_key_of(const std::string& owner, const std::string& key) {
+  return owner.empty() || key.empty() ? key : owner + "\n" + key;
+}
+
 /// FNV-1a.
 std::int64_t operator_mark(std::string_view key) {
   if (key.empty()) return 0;

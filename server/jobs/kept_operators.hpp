@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <list>
 #include <mutex>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "contact/operator.hpp"
 
 namespace signorini::server {
+
+/// The key of an operator (Problem::operator_key) for the jobs of an owner. Names share no operators: that
+/// one is at hand would tell one of them what another has solved. Where there are no names, it is as it was;
+/// empty stays empty.
+std::string operator_key_of(const std::string& owner, const std::string& key);
 
 /// By which an operator is known without its key, which may have megabytes; the same in every process. Of an
 /// empty key, and of hardly any other, it is 0.

@@ -8,6 +8,7 @@
 #include "progress/memory_meter.hpp"
 #include "run/study.hpp"
 #include "server/failure.hpp"
+#include "server/jobs/kept_operators.hpp"
 #include "solve.hpp"
 
 namespace signorini::server {
@@ -117,6 +118,7 @@ Ending run(const Claim& claim, const SolveFunction& solve, LiveSolve& live, doub
     const MemoryLimit limit(max_memory);
     const auto begin = std::chrono::steady_clock::now();
     api::Request request = api::parse_request(*claim.problem, &live);
+    request.problem.operator_key = operator_key_of(claim.job.owner, request.problem.operator_key);
     request.settings.factorization = by;
     request.settings.helpers = helpers;
     request.settings.entries_alone = claim.job.chunk.has_value();

@@ -2,23 +2,29 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "../problems/sanitized.hpp"
 #include "api/problem/problem_json.hpp"
+#include "server/handlers/submission.hpp"
+#include "server/jobs/memory_store.hpp"
 #include "server/jobs/run.hpp"
 
 namespace signorini::server::kept_operators_test {
 namespace {
 
 /// The paper's problem with n × n squares, fixed at the left; the data are of no matter.
-api::Request request(int n, double gap = 0) {
-  return api::parse_request(
-      R"({"model": "membrane", "domain": {"type": "rectangle"}, "mesh": {"divisions": [)" +
-      std::to_string(n) + "," + std::to_string(n) +
-      R"(]}, "material": {"stiffness": 1}, "load": {"body": -10}, "boundary": {
+std::string problem(int n, double gap = 0) {
+  return R"({"model": "membrane", "domain": {"type": "rectangle"}, "mesh": {"divisions": [)" +
+         std::to_string(n) + "," + std::to_string(n) +
+         R"(]}, "material": {"stiffness": 1}, "load": {"body": -10}, "boundary": {
                             "left": {"type": "fixed"}, "bottom": {"type": "contact", "gap": )" +
-      std::to_string(gap) + R"(}}, "scheme": "nonconforming"})");
+         std::to_string(gap) + R"(}}, "scheme": "nonconforming"})";
+}
+
+api::Request request(int n, double gap = 0) {
+  return api::parse_request(problem(n, gap));
 }
 
 bool is_reused(KeptOperators& operators, const api::Request& posed) {
@@ -88,6 +94,57 @@ TEST(KeptOperators, AreOfNoSolvesMemory) {
   EXPECT_EQ(one.figures().evictions, 1u);
   EXPECT_LT(peak(one, 20), alone);
   EXPECT_GT(peak(one, 20), 0.4 * alone);
+}
+
+/// A service with factors at hand, of which clients with names ask for the same problem.
+class OperatorsOfNames : public testing::Test {
+ protected:
+  NewJob job_of(const std::string& name) {
+    Request sent;
+    sent.identity.name = name;
+    return new_job(service_, sent, {problem(4), request(4), {}});
+  }
+  /// Whether a fleet would let the job begin here for the sake of its factor.
+  bool is_at_hand(const NewJob& job) const {
+    const std::vector<std::int64_t> marks = operators_.marks();
+    return std::ranges::find(marks, job.operator_mark) != marks.end();
+  }
+  bool is_reused_by(const NewJob& job) {
+    store_.add(job);
+    const Claim claim = store_.claim().value();
+    LiveSolve live(std::chrono::system_clock::now());
+    const Ending ending = run(claim, solve_, live, 1e9, Factorization::multifrontal);
+    store_.finish(claim, ending);
+    return ending.solution->summary.reused;
+  }
+
+  KeptOperators operators_{1 << 30};
+  const SolveFunction solve_ = [this](const api::Request& posed, Observer& observer) {
+    return solve_request(posed, observer, operators_);
+  };
+  MemoryStore store_{StoreLimits{4, 1 << 30, std::chrono::hours(1)}};
+  Scheduler scheduler_{store_, solve_, 0};
+  EventStreams events_{1};
+  Access access_;
+  Metrics metrics_;
+  Service service_{store_, scheduler_, events_, access_, {}, operators_, metrics_};
+};
+
+/// Else one could find out what another has solved.
+TEST_F(OperatorsOfNames, ServeTheirNameAlone) {
+  for (const char* name : {"anne", "zoe", ""}) {
+    const NewJob first = job_of(name), again = job_of(name);
+    EXPECT_FALSE(is_at_hand(first)) << name;
+    EXPECT_FALSE(is_reused_by(first)) << name;
+    EXPECT_TRUE(is_at_hand(again)) << name;
+    EXPECT_TRUE(is_reused_by(again)) << name;
+  }
+  EXPECT_TRUE(is_reused_by(job_of("anne")));
+}
+
+TEST(KeptOperators, HaveTheKeyOfTheProblemWhereThereAreNoNames) {
+  EXPECT_EQ(operator_key_of("", "key"), "key");
+  EXPECT_EQ(operator_key_of("anne", ""), "");
 }
 
 TEST(KeptOperators, ServeWorkersWhileTheyAreDropped) {
