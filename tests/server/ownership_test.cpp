@@ -181,6 +181,19 @@ TEST_F(Monitors, AreNotAloneWithThem) {
   EXPECT_NE(refusal.at("detail").get<std::string>().find("`metrics`"), std::string::npos) << refusal;
 }
 
+TEST_F(Monitors, SeeHowMuchAllNamesSolveAndNotWho) {
+  const auto solved = client_.Post("/v1/solves?wait=60", {{"Authorization", "Bearer " + sender}},
+                                   problem_titled("instant"), "application/json");
+  ASSERT_EQ(solved->status, 200) << solved->body;
+  const std::string id = json::parse(solved->body).at("id");
+  for (const std::string& token : {monitor, viewer}) {
+    const std::string text = client_.Get("/metrics", {{"Authorization", "Bearer " + token}})->body;
+    EXPECT_NE(text.find(R"(signorini_solves{status="succeeded"} 1)"), std::string::npos) << text;
+    for (const std::string& secret : {std::string("sender"), std::string("instant"), id})
+      EXPECT_EQ(text.find(secret), std::string::npos) << secret;
+  }
+}
+
 TEST_P(Owners, HaveTheirShareOfTheQueue) {
   ASSERT_EQ(post(bert, "slow")->status, 202);
   ASSERT_TRUE(becomes(
