@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
+#include "server/http/field_value.hpp"
 #include "server/http/query.hpp"
 
 namespace signorini::server {
@@ -10,19 +12,14 @@ namespace {
 
 constexpr double longest_wait = 3600;
 
-std::optional<long> preferred_seconds(const std::string& prefer) {
-  const std::string key = "wait=";
-  for (std::size_t begin = 0; begin < prefer.size();) {
-    const std::size_t end = std::min(prefer.find_first_of(",;", begin), prefer.size());
-    begin = std::min(prefer.find_first_not_of(" \t", begin), end);
-    if (prefer.compare(begin, key.size(), key) == 0) {
-      long seconds = -1;
-      std::from_chars(prefer.data() + begin + key.size(), prefer.data() + end, seconds);
-      if (seconds >= 0) return seconds;
-    }
-    begin = end + 1;
-  }
-  return std::nullopt;
+/// A preference without a number of seconds is none.
+std::optional<long> preferred_seconds(const Request& request) {
+  const std::string wait = preference(request.header("Prefer").value_or(""), "wait").value_or("");
+  const bool is_number = !wait.empty() && wait.find_first_not_of("0123456789") == std::string::npos;
+  if (!is_number) return std::nullopt;
+  long seconds = std::numeric_limits<long>::max();  // stays so for a larger number
+  std::from_chars(wait.data(), wait.data() + wait.size(), seconds);
+  return seconds;
 }
 
 std::optional<Wait> wait_time_of(const Request& request) {
@@ -30,7 +27,7 @@ std::optional<Wait> wait_time_of(const Request& request) {
   if (const auto seconds = number_parameter(request.query, "wait", 0, longest_wait)) {
     return Wait{Seconds(*seconds), std::nullopt};
   }
-  const auto seconds = preferred_seconds(request.header("Prefer").value_or(""));
+  const auto seconds = preferred_seconds(request);
   if (!seconds) return std::nullopt;
   const long kept = std::min(*seconds, static_cast<long>(longest_wait));
   return Wait{Seconds(kept), "wait=" + std::to_string(kept)};

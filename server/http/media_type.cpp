@@ -1,31 +1,13 @@
 #include "server/http/media_type.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <vector>
 
+#include "server/http/field_value.hpp"
+
 namespace signorini::server {
 namespace {
-
-std::string trimmed_lower(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  std::string trimmed(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-  std::transform(trimmed.begin(), trimmed.end(), trimmed.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return trimmed;
-}
-
-std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> pieces;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(separator, begin), text.size());
-    pieces.push_back(trimmed_lower(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return pieces;
-}
 
 /// One element of an Accept or Accept-Encoding list; the weight is 1 unless it says `q=`.
 struct Weighted {
@@ -35,12 +17,14 @@ struct Weighted {
 
 std::vector<Weighted> weighted_list(std::string_view header) {
   std::vector<Weighted> list;
-  for (const std::string& element : split(header, ',')) {
-    const std::vector<std::string> pieces = split(element, ';');
-    if (pieces.front().empty()) continue;
-    Weighted weighted{pieces.front()};
-    for (std::size_t i = 1; i < pieces.size(); ++i) {
-      if (pieces[i].starts_with("q=")) weighted.weight = std::strtod(pieces[i].c_str() + 2, nullptr);
+  const std::string small = lower(header);
+  for (const std::string_view element : parts_of(small, ',')) {
+    const std::vector<std::string_view> parts = parts_of(element, ';');
+    if (parts.front().empty()) continue;
+    Weighted weighted{std::string(parts.front())};
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      if (parts[i].starts_with("q="))
+        weighted.weight = std::strtod(std::string(parts[i].substr(2)).c_str(), nullptr);
     }
     list.push_back(weighted);
   }
@@ -80,7 +64,7 @@ std::optional<double> weight_of_coding(std::string_view coding, const std::vecto
 /// Whether the media type is `application/` and the format, or a type that is written in it (RFC
 /// 6838, 4.2.8).
 bool is_application(std::string_view content_type, const std::string& format) {
-  const std::string essence = split(content_type, ';').front();
+  const std::string essence = lower(parts_of(content_type, ';').front());
   return essence == "application/" + format ||
          (essence.starts_with("application/") && essence.ends_with("+" + format));
 }

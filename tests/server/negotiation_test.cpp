@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/http/error.hpp"
+#include "server/http/field_value.hpp"
 #include "server/http/media_type.hpp"
 #include "server/http/query.hpp"
 #include "server/http/router.hpp"
@@ -52,6 +53,25 @@ TEST(Accept, PrefersTheLargestWeightThenTheNamedThenTheFirstType) {
   EXPECT_EQ(chosen("application/json;q=0.5, application/cbor;q=0.9"), cbor);
   EXPECT_EQ(chosen("application/*, application/json;q=0"), cbor);
   EXPECT_EQ(chosen("text/html"), "none");
+}
+
+TEST(Accept, IsNotSplitWithinQuotes) {
+  const std::string json = "application/json", cbor = "application/cbor";
+  EXPECT_EQ(preferred(R"(text/html;x="a, application/cbor")", {json, cbor}), std::nullopt);
+  EXPECT_EQ(preferred(R"(application/json;x="\"; q=0", text/html)", {json, cbor}), json);
+}
+
+TEST(Prefer, IsReadAsItsRfcSays) {
+  const auto wait = [](std::string_view prefer) { return preference(prefer, "wait"); };
+  for (const char* prefer : {"wait=5", "Wait=5", "WAIT = 5", "wait\t=\t5", R"(wait="5")", R"(wait = "\5")",
+                             "respond-async,wait=5", " , wait=5;x=1, wait=7", R"(foo="a,wait=7", wait=5)",
+                             R"(foo="\",wait=7", wait=5)", R"(foo; x="a;wait=7,wait=8", wait=5)"})
+    EXPECT_EQ(wait(prefer), "5") << prefer;
+  for (const char* prefer : {"", "respond-async", R"(foo="a,wait=5")", R"(foo="a,wait=5)",
+                             R"(foo="\",wait=5")", "foo;wait=5", "await=5", "wait-5", "wait5"})
+    EXPECT_EQ(wait(prefer), std::nullopt) << prefer;
+  for (const char* prefer : {"wait", "wait=", R"(wait="")", "wait, wait=5", "wait;x=5, wait=5"})
+    EXPECT_EQ(wait(prefer), "") << prefer;
 }
 
 TEST(AcceptEncoding, HonoursWeightZero) {

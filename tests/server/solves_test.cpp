@@ -74,11 +74,23 @@ TEST_F(Solves, AnswerAWaitThatIsTooShortWithTheStatus) {
 }
 
 TEST_F(Solves, HonourThePreferHeader) {
-  const auto reply = client_.Post("/v1/solves", {{"Prefer", "respond-async, wait=5"}},
-                                  problem_titled("short"), "application/json");
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 200);
-  EXPECT_EQ(reply->get_header_value("Preference-Applied"), "wait=5");
+  const auto preferring = [&](const std::string& prefer, const std::string& title) {
+    return client_.Post("/v1/solves", {{"Prefer", prefer}}, problem_titled(title), "application/json");
+  };
+  for (const char* prefer : {"respond-async, wait=5", R"(Wait = "5", wait=0)"}) {
+    const auto reply = preferring(prefer, "short");
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 200) << prefer;
+    EXPECT_EQ(reply->get_header_value("Preference-Applied"), "wait=5") << prefer;
+  }
+  EXPECT_EQ(preferring("wait=99999999999999999999", "instant")->get_header_value("Preference-Applied"),
+            "wait=3600");
+  for (const char* prefer : {R"(foo="a,wait=5")", "wait=5s", "wait=soon, wait=5"}) {
+    const auto reply = preferring(prefer, "instant");
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 202) << prefer;
+    EXPECT_FALSE(reply->has_header("Preference-Applied")) << prefer;
+  }
 }
 
 TEST_F(Solves, ServeTheLastIterateOfAMethodThatDiverged) {
