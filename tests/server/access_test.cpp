@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <set>
 
 #include "becomes.hpp"
 #include "child_process.hpp"
@@ -77,6 +78,21 @@ TEST_F(Tokens, AreNotNeededForPages) {
     expect_problem(client_.Get(path, {{"Accept", "application/json"}}), 401);
   }
   EXPECT_EQ(get("/v1/examples/gap-sweep/picture.svg")->status, 200);
+}
+
+/// No other route is open, as the README says.
+TEST_F(Tokens, AreNeededForAllElse) {
+  const std::set<std::string> open{"/",        "/docs",   "/pages/{file}", "/v1/examples/{name}/picture.svg",
+                                   "/healthz", "/readyz", "/openapi.json"};
+  for (const Route& route : service_.router().table()) {
+    httplib::Request request;
+    request.method = route.method;
+    request.path = route.pattern;
+    std::erase_if(request.path, [](char c) { return c == '{' || c == '}'; });
+    const auto reply = client_.send(request);
+    ASSERT_TRUE(reply) << route.method << ' ' << route.pattern;
+    EXPECT_EQ(reply->status != 401, open.contains(route.pattern)) << route.method << ' ' << route.pattern;
+  }
 }
 
 TEST_F(Tokens, AreAskedOfThoseWhoAskForOptions) {
