@@ -86,6 +86,8 @@ void allow_only(const Query& query, std::initializer_list<std::string_view> allo
       throw bad_parameter(name, "There is no query parameter `" + name + "`. " + names(allowed));
     }
     if (query.count(name) > 1) throw bad_parameter(name, "`" + name + "` stands more than once.");
+    if (value.empty())
+      throw bad_parameter(name, "`" + name + "` has no value: give it one, or leave it out.");
   }
 }
 

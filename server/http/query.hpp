@@ -19,7 +19,7 @@ std::string percent_encoded(std::string_view text);
 /// Reads `name=value&...` with percent-encoded names and values, in which a plus is a blank.
 Query read_query(std::string_view text);
 
-/// Refuses every query parameter that is not among the allowed ones or stands twice: 400.
+/// Refuses every query parameter that is not among the allowed ones, stands twice or has no value: 400.
 void allow_only(const Query& query, std::initializer_list<std::string_view> allowed);
 
 std::optional<std::string> parameter(const Query& query, const std::string& name);

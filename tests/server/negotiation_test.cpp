@@ -107,6 +107,12 @@ TEST(Query, NumbersAreWholeAndInRange) {
   }
 }
 
+TEST(Query, HasNoParameterWithoutAValue) {
+  EXPECT_NO_THROW(allow_only({{"limit", "7"}}, {"limit"}));
+  for (const char* query : {"limit=", "limit", "limit=&after=x"})
+    EXPECT_THROW(allow_only(read_query(query), {"limit", "after"}), HttpError) << query;
+}
+
 Request request_for(const std::string& method, const std::string& path) {
   Request request;
   request.method = method;

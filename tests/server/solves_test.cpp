@@ -322,6 +322,24 @@ TEST_F(Solves, RefuseBadQueryValuesAndUnknownParameters) {
   EXPECT_TRUE(json::parse(get("/v1/solves")->body).at("solves").empty());
 }
 
+TEST_F(Solves, RefuseParametersWithoutAValueAlike) {
+  const auto expect_refusal = [](const httplib::Result& reply, const std::string& name) {
+    const json fault = expect_problem(reply, 400).at("errors").at(0);
+    EXPECT_EQ(fault.at("parameter"), name);
+    EXPECT_EQ(fault.at("detail"), "`" + name + "` has no value: give it one, or leave it out.");
+  };
+  const std::string solve =
+      "/v1/solves/" + std::string(json::parse(post("touches", "?wait=60")->body).at("id"));
+  for (const std::string name : {"status", "tag", "title", "limit", "after"})
+    expect_refusal(get("/v1/solves?" + name + "="), name);
+  for (const std::string name : {"wait", "cancel", "fields"})
+    expect_refusal(post("instant", "?" + name), name);
+  for (const std::string name : {"field", "deformed"})
+    expect_refusal(get(solve + "/picture.svg?" + name + "="), name);
+  expect_refusal(get(solve + "/result?fields="), "fields");
+  expect_refusal(client_.Delete("/v1/solves?tag=a&confirm="), "confirm");
+}
+
 TEST_F(Solves, AreValidatedWithoutASolve) {
   const auto reply = client_.Post("/v1/validate", problem_titled("slow"), "application/json");
   ASSERT_TRUE(reply);
