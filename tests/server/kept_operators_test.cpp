@@ -119,8 +119,9 @@ class OperatorsOfNames : public testing::Test {
   }
 
   KeptOperators operators_{1 << 30};
+  IdleCores cores_{1};
   const SolveFunction solve_ = [this](const api::Request& posed, Observer& observer) {
-    return solve_request(posed, observer, operators_);
+    return solve_request(posed, observer, operators_, cores_);
   };
   MemoryStore store_{StoreLimits{4, 1 << 30, std::chrono::hours(1)}};
   Scheduler scheduler_{store_, solve_, 0};
