@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <sched.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cblas.h>
@@ -25,6 +26,11 @@ void use_vector_instructions(char** argv) {
 int cores() {
   cpu_set_t own;
   return sched_getaffinity(0, sizeof own, &own) == 0 ? CPU_COUNT(&own) : 1;
+}
+
+void give_way_to_answers() {
+  // On Linux that is of a thread, not of the process.
+  setpriority(PRIO_PROCESS, 0, 10);
 }
 
 void use_one_thread_of_blas() {

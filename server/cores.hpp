@@ -10,6 +10,9 @@ void use_vector_instructions(char** argv);
 /// Those that this process may use.
 int cores();
 
+/// Of this thread: a solve takes the time that answers leave.
+void give_way_to_answers();
+
 /// BLAS has one thread from now on: the solver shares large products with cores that are idle itself
 /// (IdleCores), and more threads than cores make all of them slower.
 void use_one_thread_of_blas();

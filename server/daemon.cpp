@@ -119,7 +119,7 @@ void end_solves(Scheduler& scheduler, Clock::time_point until) {
 void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<bool>& failed) {
   const std::unique_ptr<JobStore> store = open_store(config);
   KeptOperators operators(config.cache_bytes);
-  IdleCores idle(cores());
+  IdleCores idle(cores(), give_way_to_answers);
   Metrics metrics;
   const auto solve = [&](const api::Request& request, Observer& observer) {
     return solve_request(request, observer, operators, idle);

@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include <sys/resource.h>
-
 namespace signorini::server {
 namespace {
 
@@ -11,8 +9,12 @@ constexpr std::chrono::milliseconds kLook{5};
 
 }  // namespace
 
-IdleCores::IdleCores(int cores) : cores_(cores) {
-  for (int i = 1; i < cores; ++i) threads_.emplace_back([this] { help(); });
+IdleCores::IdleCores(int cores, const std::function<void()>& begin) : cores_(cores) {
+  for (int i = 1; i < cores; ++i)
+    threads_.emplace_back([this, begin] {
+      begin();
+      help();
+    });
 }
 
 IdleCores::~IdleCores() {
@@ -36,8 +38,6 @@ int IdleCores::begin(Shared& shared) {
 }
 
 void IdleCores::help() {
-  // On Linux, of this thread alone: a solve takes the time that answers leave.
-  setpriority(PRIO_PROCESS, 0, 10);
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return ends_ || may_help(); });

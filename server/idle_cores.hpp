@@ -15,7 +15,10 @@ namespace signorini::server {
 /// soon as a helper has done the piece that it is at, some milliseconds.
 class IdleCores : public Executor {
  public:
-  explicit IdleCores(int cores);
+  /// Each thread begins with what is given. It should leave it no less time than the solves have, who wait
+  /// for it.
+  explicit IdleCores(
+      int cores, const std::function<void()>& begin = [] {});
   ~IdleCores() override;
 
   IdleCores(const IdleCores&) = delete;

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sys/resource.h>
-
 #include <spdlog/spdlog.h>
 
+#include "server/cores.hpp"
 #include "server/log.hpp"
 
 namespace signorini::server {
@@ -57,8 +56,7 @@ void log_end(const Claim& claim, const Ending& ending) {
 }  // namespace
 
 void Scheduler::work() {
-  // On Linux, of this thread alone: a solve takes the time that answers leave.
-  setpriority(PRIO_PROCESS, 0, 10);
+  give_way_to_answers();
   while (const std::optional<Running> running = next()) run_to_end(*running);
   {
     const std::lock_guard lock(mutex_);

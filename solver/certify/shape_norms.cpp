@@ -14,7 +14,7 @@ void ShapeNorms::look_over(const Discretization& discrete) {
   shapes_.emplace(AffineMap(mesh.corners(0)));
   for (int t = 0; t < discrete.triangles(); ++t) {
     const AffineMap map(mesh.corners(t));
-    ++(*shapes_)(map.jacobian, [&map] { return Shape(map); }).triangles;
+    ++(*shapes_)(map.jacobian, [&map] { return Shape{map}; }).triangles;
   }
   shapes_->forget_if([](const Shape& shape) { return shape.triangles < kOften; });
 }

@@ -35,7 +35,7 @@ TEST(InParts, CoverTheLoopOnce) {
   Threads threads(4);
   Observer observer;
   for (Executor* executor : {static_cast<Executor*>(nullptr), static_cast<Executor*>(&threads)})
-    for (const int count : {0, 1, 8191, 8192, 8193, kMany}) {
+    for (const int count : {0, 1, 2047, 2048, 2049, kMany}) {
       Progress progress(observer, {}, 0, executor);
       std::vector<int> times(count, 0);
       in_parts(count, progress, [&](Part part, Progress&) {
@@ -80,8 +80,8 @@ TEST(InParts, TheFirstFailureIsTold) {
         kMany, progress,
         [](Part part, Progress&) {
           // The first to fail is not the first to be found.
-          if (part.begin == 3 * 8192) std::this_thread::sleep_for(std::chrono::milliseconds(30));
-          if (part.begin >= 3 * 8192) throw SolveError(std::to_string(part.begin / 8192));
+          if (part.begin == 3 * 2048) std::this_thread::sleep_for(std::chrono::milliseconds(30));
+          if (part.begin >= 3 * 2048) throw SolveError(std::to_string(part.begin / 2048));
           return 1;
         },
         [&](int one) { added += one; });
