@@ -1,6 +1,10 @@
 #include "server/cores.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <limits>
 #include <string_view>
 
 #include <sched.h>
@@ -23,9 +27,24 @@ void use_vector_instructions(char** argv) {
   execv("/proc/self/exe", argv);  // returns only if it fails: then the solves are slow
 }
 
+namespace {
+
+/// Cores that the time of the control group is worth; without a limit it says `max` or -1.
+double cores_of_group() {
+  double time = 0, period = 0;
+  if (std::ifstream("/sys/fs/cgroup/cpu.max") >> time >> period && time > 0) return time / period;
+  if (std::ifstream("/sys/fs/cgroup/cpu/cpu.cfs_quota_us") >> time && time > 0 &&
+      std::ifstream("/sys/fs/cgroup/cpu/cpu.cfs_period_us") >> period)
+    return time / period;
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
 int cores() {
   cpu_set_t own;
-  return sched_getaffinity(0, sizeof own, &own) == 0 ? CPU_COUNT(&own) : 1;
+  const double all = sched_getaffinity(0, sizeof own, &own) == 0 ? CPU_COUNT(&own) : 1;
+  return static_cast<int>(std::max(1., std::min(all, std::ceil(cores_of_group()))));
 }
 
 void give_way_to_answers() {

@@ -7,7 +7,8 @@ namespace signorini::server {
 /// slower, for one that is newer than itself; it reads the variable when it is loaded, before main.
 void use_vector_instructions(char** argv);
 
-/// Those that this process may use.
+/// So many cores this process may use, one at least: those that it may run on, and of them what the time of
+/// its control group is worth, that of a container.
 int cores();
 
 /// Of this thread: a solve takes the time that answers leave.

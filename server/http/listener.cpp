@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "server/cores.hpp"
 #include "server/http/content.hpp"
 #include "server/http/dispatch.hpp"
 #include "server/http/hatch.hpp"
@@ -31,12 +32,7 @@ constexpr int nowhere = -1;
 
 /// Some more than there are cores, for those that wait for the disk.
 std::size_t most_at_work() {
-  return std::max<std::size_t>(8, 2 * std::thread::hardware_concurrency());
-}
-
-/// What is read, written or compressed for long keeps a core busy.
-std::size_t cores() {
-  return std::max(1u, std::thread::hardware_concurrency());
+  return std::max<std::size_t>(8, 2 * static_cast<std::size_t>(cores()));
 }
 
 /// Readers of long bodies: one reads while others wait for the disk.
@@ -165,10 +161,11 @@ class Listener::Impl {
         slow_readers_(options.long_replies / 2),
         pool_(most_at_work(), most_at_work()),
         probe_pool_(2, 2),
-        takers_(most_at_work(), cores()),
+        // What is read, written or compressed for long keeps a core busy.
+        takers_(most_at_work(), static_cast<std::size_t>(cores())),
         readers_(readers, 1),
-        carriers_(options.long_replies, cores()),
-        list_carriers_(options.long_replies, cores()),
+        carriers_(options.long_replies, static_cast<std::size_t>(cores())),
+        list_carriers_(options.long_replies, static_cast<std::size_t>(cores())),
         hatch_({},
                [this](std::shared_ptr<Connection> connection, bool goes_on) {
                  connection->keep_place(pending_.take_place());
