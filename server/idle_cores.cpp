@@ -6,6 +6,9 @@ namespace signorini::server {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{5};
+/// Most pieces take a millisecond. One that is half of a certificate takes seconds, in which it shares its
+/// core: who has just begun must hear cancels.
+constexpr std::chrono::milliseconds kPatience{20};
 
 }  // namespace
 
@@ -77,8 +80,9 @@ void IdleCores::run(int count, const std::function<void(int)>& work, const std::
 IdleCores::Solve::Solve(IdleCores& cores) : cores_(cores) {
   std::unique_lock lock(cores_.mutex_);
   ++cores_.solves_;
-  cores_.left_.wait(
-      lock, [this] { return cores_.helpers_ == 0 || cores_.solves_ + cores_.helpers_ <= cores_.cores_; });
+  cores_.left_.wait_for(lock, kPatience, [this] {
+    return cores_.helpers_ == 0 || cores_.solves_ + cores_.helpers_ <= cores_.cores_;
+  });
 }
 
 IdleCores::Solve::~Solve() {

@@ -12,7 +12,7 @@ namespace signorini::server {
 
 /// The cores that no solve occupies help those that run: a thread for each core but one, which are at work
 /// only while solves and they together have no more than the cores. A solve that begins has its core back as
-/// soon as a helper has done the piece that it is at, some milliseconds.
+/// soon as a helper has done the piece that it is at, and waits for that, but not for long.
 class IdleCores : public Executor {
  public:
   /// Each thread begins with what is given. It should leave it no less time than the solves have, who wait

@@ -101,6 +101,28 @@ TEST(IdleCores, AreNeverMoreThanThereAre) {
   EXPECT_GE(at_once.most(), 2);
 }
 
+/// It would hear no cancel meanwhile.
+TEST(IdleCores, ASolveBeginsBesideALongPiece) {
+  IdleCores idle(2);
+  std::atomic<bool> is_at_it = false, may_end = false;
+  std::thread other([&] {
+    const IdleCores::Solve solve(idle);
+    const auto caller = std::this_thread::get_id();
+    idle.run(
+        2,
+        [&](int) {
+          while (std::this_thread::get_id() == caller && !is_at_it) std::this_thread::yield();
+          is_at_it = true;
+          while (!may_end) wait_a_little();
+        },
+        nothing);
+  });
+  while (!is_at_it) wait_a_little();
+  { const IdleCores::Solve begins(idle); }
+  may_end = true;
+  other.join();
+}
+
 TEST(IdleCores, WhoWaitsForAHelperIsCalled) {
   IdleCores idle(2);
   const IdleCores::Solve solve(idle);
