@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "mesh/rectangle.hpp"
 #include "mesh/refine.hpp"
 #include "mesh/rings.hpp"
+#include "run/openings.hpp"
 
 namespace signorini {
 namespace {
@@ -84,6 +84,18 @@ double seconds_of(const Quantity& quantity, const Material& material, const Spac
          3 * seconds_of_law(material, spaces, triangles);
 }
 
+/// One of the quantities that are openings, with a weight that varies if there is one: then the body takes
+/// more. Null if there is none.
+const Quantity* heaviest_opening(const std::vector<Quantity>& quantities) {
+  const Quantity* heaviest = nullptr;
+  for (const Quantity& quantity : quantities) {
+    const bool varies = std::ranges::any_of(
+        quantity.openings, [](const auto& opening) { return !opening.second.is_constant(); });
+    if (!quantity.openings.empty() && (heaviest == nullptr || varies)) heaviest = &quantity;
+  }
+  return heaviest;
+}
+
 }  // namespace
 
 double seconds_of_quantities(const Problem& problem, double triangles) {
@@ -96,6 +108,8 @@ double seconds_of_quantities(const Problem& problem, double triangles) {
 
 Estimation::Estimation(const Problem& problem, Factorization by, const PredictedSizes* predicted)
     : problem_(problem), by_(by), predicted_(predicted) {
+  if (const Quantity* opening = heaviest_opening(problem.quantities))
+    pulled_ = std::make_unique<Estimation>(pulled_body(*opening, problem), by, predicted);
   // How many unknowns there are does not depend on them, and to ask for them may take long.
   for (auto& [part, condition] : problem_.boundary) {
     if (auto* contact = std::get_if<Contact>(&condition)) contact->gap = Field(0);
@@ -340,15 +354,22 @@ double Estimation::own_shapes(double triangles) const {
 
 Estimate Estimation::operator()() {
   const Counts counts = count();
-  return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts);
+  std::optional<Estimate> pulled;
+  if (pulled_) pulled = (*pulled_)(problem_.mesh, problem_.scheme);
+  return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts,
+                     pulled ? &*pulled : nullptr);
 }
 
 Estimate Estimation::operator()(const Mesh& mesh) {
   cut(mesh);
-  return estimate_of(counts_of(sizes_of(mesh), make_clearance_space(problem_, mesh).unknowns));
+  std::optional<Estimate> pulled;
+  if (pulled_) pulled = (*pulled_)(mesh);
+  return estimate_of(counts_of(sizes_of(mesh), make_clearance_space(problem_, mesh).unknowns),
+                     pulled ? &*pulled : nullptr);
 }
 
-Estimate Estimation::estimate_of(const Counts& counts) const {
+/// `pulled`: that of the body that an opening's weight pulls, on the same mesh; null if there is none.
+Estimate Estimation::estimate_of(const Counts& counts, const Estimate* pulled) const {
   const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
   Estimate estimate;
   estimate.triangles = counts.triangles;
@@ -378,12 +399,15 @@ Estimate Estimation::estimate_of(const Counts& counts) const {
   estimate.sweep_bytes = memory_of_solve(problem_, spaces, sizes, by_, Afterwards::used_again);
   estimate.paper_form_bytes = memory_of_paper_form(problem_, spaces, sizes, by_);
   if (!problem_.quantities.empty()) {
-    // The body without its contacts is factored beside the problem.
-    const bool opens = std::ranges::any_of(
-        problem_.quantities, [](const Quantity& quantity) { return !quantity.openings.empty(); });
     const double of_dual = memory_of_dual(problem_, spaces, sizes.triangles);
-    for (double* const bytes : {&estimate.memory_bytes, &estimate.sweep_bytes})
-      *bytes = (opens ? 2 : 1) * *bytes + of_dual;
+    for (const auto& [bytes, factor_is] : {std::pair{&estimate.memory_bytes, Afterwards::let_go},
+                                           std::pair{&estimate.sweep_bytes, Afterwards::used_again}}) {
+      // The body that an opening's weight pulls is solved beside the problem.
+      if (pulled)
+        *bytes =
+            std::max(*bytes, memory_at_rest(problem_, spaces, sizes, by_, factor_is) + pulled->memory_bytes);
+      *bytes += of_dual;
+    }
     estimate.kept_bytes = memory_of_kept_duals(problem_, spaces, sizes);
   }
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);

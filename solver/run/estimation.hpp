@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -81,7 +82,7 @@ class Estimation {
   MeshSizes sizes_by(const MeshRequest& request);
   Counts count();
   Counts counts_of(const MeshSizes& sizes, std::int64_t contact) const;
-  Estimate estimate_of(const Counts& counts) const;
+  Estimate estimate_of(const Counts& counts, const Estimate* pulled) const;
   template <typename EdgesOfPart>
   void cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
            const EdgesOfPart& edges_of, Shows shows);
@@ -100,6 +101,7 @@ class Estimation {
   Problem problem_;
   const Factorization by_;
   const PredictedSizes* const predicted_;
+  std::unique_ptr<Estimation> pulled_;            ///< of the body that openings' weights pull
   std::vector<const Condition*> conditions_;      ///< of the parts
   std::vector<int> chains_;                       ///< of the parts, at most: nodes more than edges
   int may_be_tried_ = 12;                         ///< coarser meshes

@@ -177,14 +177,17 @@ double minimization(const Spaces& spaces, const SolveSizes& sizes) {
   return of_contact * std::min(sizes.contact, sizes.triangles / triangles_at_contact);
 }
 
-/// What takes place while the error is bounded: the admissible pair and its shares, the law if it varies, and
-/// of an elastic body first the best stress, then the best of the pair, by the lower order both at once.
-double certificate(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
-  constexpr double pair = 170, of_cut = 64;
-  const double of_triangle = pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut);
+/// The admissible pair and its shares, and the law if it varies.
+double pair(const Problem& problem, const SolveSizes& sizes) {
+  constexpr double of_pair = 170, of_cut = 64;
+  return sizes.triangles * (of_pair + (is_constant(problem.material) ? 0 : sizeof(LawPiece) + of_cut));
+}
+
+/// What it takes to find the pair: of an elastic body first the best stress, then the best of the pair, by
+/// the lower order both at once.
+double finding_pair(const Spaces& spaces, const SolveSizes& sizes) {
   const int at_once = spaces.components == 1 ? 0 : spaces.order == 0 ? 2 : 1;
-  const double of_best_pair = at_once * sizes.triangles * relaxation(sizes.own_shapes);
-  return sizes.triangles * of_triangle + std::max(minimization(spaces, sizes), of_best_pair);
+  return std::max(minimization(spaces, sizes), at_once * sizes.triangles * relaxation(sizes.own_shapes));
 }
 
 /// Whether all is known of the load and of the tractions.
@@ -315,35 +318,77 @@ double shapes_of_recovery(const Problem& problem, const SolveSizes& sizes) {
   return sizeof(Shape) * std::min(most, sizes.own_shapes * sizes.triangles);
 }
 
+namespace {
+
+/// The factor, with the complement of the contact unknowns.
+double whole(const FactorBytes& made, const SolveSizes& sizes) {
+  return made.panels + made.fronts + kNumber * sizes.contact * sizes.contact;
+}
+
+/// The traces as they were found, and the solution.
+double found(const Spaces& spaces, const SolveSizes& sizes) {
+  return kNumber * sizes.system + fields_of_solution(spaces, sizes.triangles);
+}
+
+/// Whether the factor is there when the fields are found.
+bool is_kept(const Problem& problem, Afterwards factor_is) {
+  return factor_is == Afterwards::used_again || !problem.quantities.empty();
+}
+
+/// What there is once the error is bounded. Where the factor is used again there are other right sides, and
+/// in a sweep two more complements.
+double at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, const FactorBytes& made,
+               Afterwards factor_is) {
+  const double others = 2 * kNumber * sizes.system;
+  const double complements =
+      factor_is == Afterwards::used_again ? 2 * kNumber * sizes.contact * sizes.contact : 0;
+  const double kept = is_kept(problem, factor_is) ? whole(made, sizes) + others + complements : 0;
+  return kept + found(spaces, sizes) + sizes.triangles * kNumber * spaces.stresses() + pair(problem, sizes) +
+         tables(problem, spaces);
+}
+
+/// A mesh that refines itself keeps the solution of the level before, and what is seen of all.
+double all_along(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
+                                                    memory_of_levels(spaces, sizes.triangles)
+                                              : 0;
+  return sizes.triangles * (kMesh + discretization(problem.body, spaces)) + on_boundary(sizes) + before;
+}
+
+}  // namespace
+
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
   const double complement = kNumber * sizes.contact * sizes.contact;
-  const double factor = made.panels + made.fronts + complement;
-  const double kept = factor_is == Afterwards::used_again || !problem.quantities.empty() ? factor : 0;
+  const double factor = whole(made, sizes);
+  const double kept = is_kept(problem, factor_is) ? factor : 0;
   const double right = kNumber * sizes.system;
   const double factoring = factor + while_factoring(made, spaces, sizes, by) + right +
                            sizes.triangles * element_sum(spaces, sizes.own_shapes);
-  // The traces as they were found, and the solution; and what is made on the way to it.
-  const double found = right + fields_of_solution(spaces, sizes.triangles);
-  const double finding = factor + 4 * right + complement + found + shapes_of_recovery(problem, sizes);
-  const double certifying = kept + (kept > 0 ? 2 * (right + complement) : 0) + found +
-                            sizes.triangles * kNumber * spaces.stresses() +
-                            certificate(problem, spaces, sizes) + carrying(problem, spaces, sizes.triangles) +
-                            tables(problem, spaces);
+  // And what is made on the way to the fields.
+  const double finding =
+      factor + 4 * right + complement + found(spaces, sizes) + shapes_of_recovery(problem, sizes);
+  // Dual problems factor the complement again, one after the other.
+  const double certifying = at_rest(problem, spaces, sizes, made, factor_is) +
+                            std::max(finding_pair(spaces, sizes) + carrying(problem, spaces, sizes.triangles),
+                                     problem.quantities.empty() ? 0 : complement);
   // Extensions have the components in a point of a cut, where traces and rotations have more on a side.
   const double on_side = spaces.traces_per_edge() + (spaces.rotations() ? 1 : 0), d = spaces.components;
   const double of_factor = d * d / (on_side * on_side) * while_factoring(made, spaces, sizes, by);
-  const double enclosing = kept + found + of_factor + d * d / (on_side * on_side) * made.panels +
+  const double enclosing = kept + found(spaces, sizes) + of_factor +
+                           d * d / (on_side * on_side) * made.panels +
                            sizes.triangles * (3 * d * sizeof(int) + sizeof(int) + sizeof(Point) +
                                               3 * kNumber * d + sizes.own_shapes * 9 * d * d * kNumber);
-  // A mesh that refines itself keeps the solution of the level before, and what is seen of all.
-  const double before = problem.mesh.adaptive ? memory_of_solution(spaces, sizes.triangles) +
-                                                    memory_of_levels(spaces, sizes.triangles)
-                                              : 0;
-  const double all_along =
-      sizes.triangles * (kMesh + discretization(problem.body, spaces)) + on_boundary(sizes) + before;
-  return slack(spaces) * (all_along + std::max({factoring, finding, certifying, enclosing}));
+  return slack(spaces) *
+         (all_along(problem, spaces, sizes) + std::max({factoring, finding, certifying, enclosing}));
+}
+
+double memory_at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, Factorization by,
+                      Afterwards factor_is) {
+  const FactorBytes made = factor_of(problem, spaces, sizes, by);
+  return slack(spaces) *
+         (all_along(problem, spaces, sizes) + at_rest(problem, spaces, sizes, made, factor_is));
 }
 
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,

@@ -32,7 +32,11 @@ enum class Afterwards { let_go, used_again };
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is);
 
-/// The same while the paper's iteration runs.
+/// What such a solve holds once its error is bounded, while another body is solved for its quantities.
+double memory_at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, Factorization by,
+                      Afterwards factor_is);
+
+/// What a solve takes while the paper's iteration runs.
 double memory_of_paper_form(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                             Factorization by);
 

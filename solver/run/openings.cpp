@@ -25,8 +25,9 @@ Condition pull(const Contact& contact, const Field& weight, int components) {
   return Traction{VectorField(times(d.x()), times(d.y()))};
 }
 
-/// The body without loads and contacts, held where it is held, which the weights pull.
-Problem pulled(const Quantity& quantity, Problem problem) {
+}  // namespace
+
+Problem pulled_body(const Quantity& quantity, Problem problem) {
   problem.body = {};
   problem.quantities.clear();
   problem.mesh.adaptive.reset();
@@ -45,8 +46,6 @@ Problem pulled(const Quantity& quantity, Problem problem) {
   return problem;
 }
 
-}  // namespace
-
 const Field* weight_on(const std::map<std::string, Field>& weights, const Discretization& discrete,
                        const ContactEdge& contact) {
   const int part = discrete.clearance.rows[contact.rows[0]].part;
@@ -55,7 +54,7 @@ const Field* weight_on(const std::map<std::string, Field>& weights, const Discre
 }
 
 Pull pull_of(const Quantity& quantity, const Discretization& discrete, Factorization by, Progress& progress) {
-  const Problem problem = pulled(quantity, discrete.problem);
+  const Problem problem = pulled_body(quantity, discrete.problem);
   constexpr double anything = std::numeric_limits<double>::infinity();
   try {
     CondensedProblem condensed(problem, std::make_shared<const Mesh>(discrete.mesh), by, progress);

@@ -5,6 +5,9 @@
 
 namespace signorini {
 
+/// The body of a problem without its loads and contacts, held where it is held, which the weights pull.
+Problem pulled_body(const Quantity& quantity, Problem problem);
+
 /// That of the part that a contact edge lies on; null if there is none.
 const Field* weight_on(const std::map<std::string, Field>& weights, const Discretization& discrete,
                        const ContactEdge& contact);

@@ -353,6 +353,24 @@ TEST_P(Memory, OfQuantitiesIsThatOfTheirDuals) {
   expect_bound(pressed);
 }
 
+/// The body without its contacts is solved beside what is held, whose tables there are twice then.
+TEST_P(Memory, OfOpeningsIsThatOfTheBodyThatIsPulled) {
+  const int n = long_tests() ? 96 : 50;
+  for (const bool varies : {false, true}) {
+    Quantity opening;
+    opening.name = "opening";
+    opening.openings = {{"bottom", varies ? Field(problems::formula("1 + sin(3*x)")) : Field(1)}};
+    Problem sagging = membrane(GetParam(), n, n), strip = membrane(GetParam(), 6 * n, 4);
+    std::get<Rectangle>(strip.domain).size.x() = 1.5 * n;
+    Problem pressed = elastic(GetParam(), n, n), beam = elastic(GetParam(), 6 * n, 4);
+    std::get<Rectangle>(beam.domain).size.x() = 1.5 * n;
+    for (Problem* problem : {&sagging, &strip, &pressed, &beam}) {
+      problem->quantities = {opening};
+      expect_bound(*problem, {ActiveSet{}, std::nullopt}, 2 * tables);
+    }
+  }
+}
+
 /// A disc that is small on its triangle is cut out of it cell by cell.
 TEST_P(Memory, OfMeansOverTinyDiscs) {
   Quantity mean;
