@@ -22,7 +22,7 @@ void improve(const Discretization& discrete, const Solution& solution, const Eig
     return;
   }
   const auto relax_tractions_of_pair = [&](Progress& its) {
-    pair.tractions.emplace(discrete, solution.stress, pair.pressure);
+    pair.tractions.emplace(discrete, solution.stress, pair.pressure, its);
     relax_tractions(discrete, solution.stress, *pair.tractions, kSweepsOfTractions, its);
   };
   if (discrete.spaces().order == 1) {

@@ -81,7 +81,7 @@ void expect_balance(const SolvedProblem& made, const ContactPressure& pressure,
 
 /// The same before and after the tractions are relaxed.
 void expect_balance(const SolvedProblem& made, const ContactPressure& pressure) {
-  EdgeTractions tractions(made.discretization, made.solution.stress, pressure);
+  EdgeTractions tractions(made.discretization, made.solution.stress, pressure, made.progress);
   expect_balance(made, pressure, tractions);
   relax_tractions(made.discretization, made.solution.stress, tractions, 2, made.progress);
   expect_balance(made, pressure, tractions);

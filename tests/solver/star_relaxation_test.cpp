@@ -138,7 +138,7 @@ TEST(TractionRelaxation, TakesTheStressNearerToThatOfTheScheme) {
     for (const Problem& problem : bodies(scheme)) {
       const SolvedProblem solved(problem, solve(problem, {ActiveSet{}, {}}));
       const ContactPressure pressure(solved.discretization, solved.solution.stress, solved.clearance);
-      EdgeTractions tractions(solved.discretization, solved.solution.stress, pressure);
+      EdgeTractions tractions(solved.discretization, solved.solution.stress, pressure, solved.progress);
       const double before = distance_square(solved, tractions);
       relax_tractions(solved.discretization, solved.solution.stress, tractions, 2, solved.progress);
       const double after = distance_square(solved, tractions);
@@ -155,7 +155,7 @@ TEST(DisplacementRelaxation, LowersTheEnergyAndKeepsWhatIsGiven) {
     for (const Problem& problem : bodies(scheme)) {
       const SolvedProblem solved(problem, solve(problem, {ActiveSet{}, {}}));
       const ContactPressure pressure(solved.discretization, solved.solution.stress, solved.clearance);
-      const EdgeTractions tractions(solved.discretization, solved.solution.stress, pressure);
+      const EdgeTractions tractions(solved.discretization, solved.solution.stress, pressure, solved.progress);
       AdmissibleDisplacement v = solved.displacement();
       const double before = energy(solved, v, tractions);
       v.relax_on_stars(1, solved.progress);

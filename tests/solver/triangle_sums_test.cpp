@@ -359,7 +359,7 @@ class ElasticFields {
       : made_(problem, solve(problem, {ActiveSet{}, {}})),
         v_(made_.displacement()),
         tractions_(made_.discretization, made_.solution.stress,
-                   {made_.discretization, made_.solution.stress, made_.clearance}) {}
+                   {made_.discretization, made_.solution.stress, made_.clearance}, made_.progress) {}
 
   const Mesh& mesh() const { return *made_.solution.mesh; }
   const AdmissibleDisplacement& v() const { return v_; }

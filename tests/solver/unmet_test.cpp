@@ -124,7 +124,10 @@ TEST(Unmet, IsABodyThatTouchesItselfInAPoint) {
   const Mesh mesh = make_mesh({Point(0, 0), Point(1, 0), Point(0, 1), Point(-1, 0), Point(0, -1)},
                               {{0, 1, 2}, {0, 3, 4}}, {"ground"}, {{{0, 1}, 0}, {{0, 3}, 0}});
   const Discretization discretization(problem, mesh);
-  const EdgeTractions tractions(discretization, no_stress(discretization), no_pressure(discretization));
+  Observer nobody;
+  Progress progress(nobody, std::nullopt);
+  const EdgeTractions tractions(discretization, no_stress(discretization), no_pressure(discretization),
+                                progress);
   ASSERT_EQ(tractions.unmet().size(), 1u);
   EXPECT_NE(tractions.unmet()[0].find("the body touches itself in the point"), std::string::npos);
 }

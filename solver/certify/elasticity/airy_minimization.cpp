@@ -52,7 +52,7 @@ class Minimization {
         places_(mesh_.points.size()) {
     for (int i = 0; i < static_cast<int>(discrete.clearance.edges.size()); ++i) add_side(i);
     place_unknowns();
-    assemble(stress, EdgeTractions(discrete, stress, pressure), progress);
+    assemble(stress, EdgeTractions(discrete, stress, pressure, progress), progress);
   }
 
   void run(const AdmissibleDisplacement& v, const Eigen::VectorXd& clearance, Progress& progress) {

@@ -7,22 +7,27 @@
 #include "fem/lagrange.hpp"
 #include "mesh/parts.hpp"
 #include "mesh/triangles_at_points.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 namespace {
 
 /// Column t: ∫ φ_z (σ_xy − σ_yx) over triangle t for its three corners z.
-Eigen::Matrix3Xd asymmetry(const Discretization& discrete, const Eigen::MatrixXd& stress) {
+Eigen::Matrix3Xd asymmetry(const Discretization& discrete, const Eigen::MatrixXd& stress,
+                           Progress& progress) {
   const StressValues<2> values(discrete.spaces(), triangle_points());
   Eigen::Matrix3Xd moments = Eigen::Matrix3Xd::Zero(3, discrete.triangles());
-  for (int t = 0; t < discrete.triangles(); ++t) {
-    const AffineMap map(discrete.mesh.corners(t));
-    for (int q = 0; q < TriangleRule::size; ++q) {
-      const Tensor<2> sigma = values(q, map, stress.col(t));
-      moments.col(t) += triangle_rule().weights[q] * map.determinant * (sigma[1] - sigma[2]) *
-                        triangle_basis(1, triangle_rule().points[q]);
+  in_parts(discrete.triangles(), progress, [&](Part part, Progress& own) {
+    for (int t = part.begin; t < part.end; ++t) {
+      own.check_in(t);
+      const AffineMap map(discrete.mesh.corners(t));
+      for (int q = 0; q < TriangleRule::size; ++q) {
+        const Tensor<2> sigma = values(q, map, stress.col(t));
+        moments.col(t) += triangle_rule().weights[q] * map.determinant * (sigma[1] - sigma[2]) *
+                          triangle_basis(1, triangle_rule().points[q]);
+      }
     }
-  }
+  });
   return moments;
 }
 
@@ -48,13 +53,13 @@ int other_side(const Mesh& mesh, int edge, int t) {
 }  // namespace
 
 EdgeTractions::EdgeTractions(const Discretization& discrete, const Eigen::MatrixXd& stress,
-                             const ContactPressure& pressure)
+                             const ContactPressure& pressure, Progress& progress)
     : discrete_(discrete), given_(discrete.traction), tractions_(discrete.mesh.edges.size()) {
-  take_from(stress);
+  take_from(stress, progress);
   change_pressure(pressure);
-  Eigen::Matrix3Xd moments = asymmetry(discrete, stress);
+  Eigen::Matrix3Xd moments = asymmetry(discrete, stress, progress);
   if (discrete.spaces().leaves_couples()) take_couples(moments);
-  balance(moments);
+  balance(moments, progress);
 }
 
 Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
@@ -71,18 +76,21 @@ Eigen::Matrix<double, 2, 3> EdgeTractions::on(int t, int e) const {
   return all;
 }
 
-void EdgeTractions::take_from(const Eigen::MatrixXd& stress) {
+void EdgeTractions::take_from(const Eigen::MatrixXd& stress, Progress& progress) {
   const Mesh& mesh = discrete_.mesh;
   const int order = discrete_.spaces().order;
-  for (int edge = 0; edge < static_cast<int>(mesh.edges.size()); ++edge) {
-    const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
-    for (int c = 0; c < 2; ++c) {
-      LocalVector fluxes(order + 1);
-      for (int j = 0; j <= order; ++j) fluxes[j] = stress((e * (order + 1) + j) * 2 + c, t);
-      const LocalVector density = project_onto_edge(order, fluxes) / mesh.length(edge);
-      at(edge).row(c) << density[0], density[order];
+  in_parts(static_cast<int>(mesh.edges.size()), progress, [&](Part part, Progress& own) {
+    for (int edge = part.begin; edge < part.end; ++edge) {
+      own.check_in(edge);
+      const int t = mesh.edge_triangles[edge][0], e = mesh.local_edge(t, edge);
+      for (int c = 0; c < 2; ++c) {
+        LocalVector fluxes(order + 1);
+        for (int j = 0; j <= order; ++j) fluxes[j] = stress((e * (order + 1) + j) * 2 + c, t);
+        const LocalVector density = project_onto_edge(order, fluxes) / mesh.length(edge);
+        at(edge).row(c) << density[0], density[order];
+      }
     }
-  }
+  });
 }
 
 /// The couples as the rotation took them, and the traction's linear part, whose couple is among them.
@@ -105,10 +113,12 @@ void EdgeTractions::take_couples(Eigen::Matrix3Xd& moments) {
 }
 
 /// The flux of the stream function around each point balances the moments of every triangle there.
-void EdgeTractions::balance(const Eigen::Matrix3Xd& moments) {
+void EdgeTractions::balance(const Eigen::Matrix3Xd& moments, Progress& progress) {
   const TrianglesAtPoints triangles(discrete_.mesh);
-  for (int point = 0; point < static_cast<int>(discrete_.mesh.points.size()); ++point)
+  for (int point = 0; point < static_cast<int>(discrete_.mesh.points.size()); ++point) {
+    progress.check_in(point);
     turn_around(point, triangles[point], moments);
+  }
 }
 
 void EdgeTractions::turn_around(int point, std::span<const int> triangles, const Eigen::Matrix3Xd& moments) {

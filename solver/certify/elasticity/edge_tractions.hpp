@@ -7,6 +7,7 @@
 #include "certify/pressure/contact_pressure.hpp"
 #include "fem/discretization.hpp"
 #include "fem/traction_field.hpp"
+#include "progress/progress.hpp"
 
 namespace signorini {
 
@@ -30,8 +31,9 @@ inline Eigen::Matrix<double, 2, 3> linear_along_edge(const Eigen::Matrix2d& ends
 /// w·t = −∂_n ψ.
 class EdgeTractions {
  public:
+  /// Throws what Progress::check() throws.
   EdgeTractions(const Discretization& discrete, const Eigen::MatrixXd& stress,
-                const ContactPressure& pressure);
+                const ContactPressure& pressure, Progress& progress);
 
   /// The traction on a triangle's local edge e from outside, per length: column 0 at corner e + 1, column 1
   /// at corner e + 2, column 2 in the middle.
@@ -53,10 +55,10 @@ class EdgeTractions {
 
  private:
   Eigen::Matrix2d& at(int edge) { return tractions_[edge]; }
-  void take_from(const Eigen::MatrixXd& stress);
+  void take_from(const Eigen::MatrixXd& stress, Progress& progress);
   void change_pressure(const ContactPressure& pressure);
   void take_couples(Eigen::Matrix3Xd& moments);
-  void balance(const Eigen::Matrix3Xd& moments);
+  void balance(const Eigen::Matrix3Xd& moments, Progress& progress);
   void turn_around(int point, std::span<const int> triangles, const Eigen::Matrix3Xd& moments);
 
   const Discretization& discrete_;
