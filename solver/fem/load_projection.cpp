@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -46,6 +47,22 @@ Eigen::AlignedBox2d box_around(const Mesh& mesh, int begin, int end) {
   return box;
 }
 
+double largest_at_centroids(const VectorField& body, const Mesh& mesh, Progress& progress) {
+  double largest = 0;
+  in_parts(
+      static_cast<int>(mesh.triangles.size()), progress,
+      [&](Part part, Progress& own) {
+        double found = 0;
+        for (int t = part.begin; t < part.end; ++t) {
+          own.check_in(t);
+          for (int c = 0; c < body.size(); ++c) found = std::max(found, std::abs(body(c, mesh.centroid(t))));
+        }
+        return found;
+      },
+      [&](double found) { largest = std::max(largest, found); });
+  return largest;
+}
+
 /// Of what f has between P1 and P2: if the rest is larger where f jumps, that part is left with it.
 constexpr double kMuch = 0.2;
 
@@ -59,54 +76,74 @@ LoadProjection::LoadProjection(const Problem& problem, const Mesh& mesh, Progres
     if (body.fields()[c].is_constant()) constant.projection.row(c).setConstant(body(c, Point::Zero()));
   constant.balanced = constant.projection;
   if (std::ranges::all_of(body.fields(), &Field::is_constant)) {
-    all_.push_back(constant);
+    found_.all.push_back(constant);
     return;
   }
-  double largest = 0;
-  for (int t = 0; t < count; ++t) {
-    if (progress) progress->check_in(t);
-    for (int c = 0; c < body.size(); ++c) largest = std::max(largest, std::abs(body(c, mesh.centroid(t))));
-  }
-  number_of_.reserve(count);
-  std::vector<int> rough;
-  for (int begin = 0; begin < count; begin += kNeighbours) {
-    if (progress) progress->check();
-    const int end = std::min(begin + kNeighbours, count);
-    ProjectedLoad of_all = constant;
-    const bool is_constant = is_constant_on(body, box_around(mesh, begin, end), largest, of_all);
-    for (int t = begin; t < end; ++t) {
-      if (is_constant) {
-        take(of_all);
-        continue;
-      }
-      ProjectedLoad own = constant;
-      CellBudget budget{kFirstCells * body.size(), progress};
-      const std::vector<std::string> known = unmet_;
-      if (project_on(body, mesh.corners(t), largest, budget, own)) {
-        take(std::move(own));
-        continue;
-      }
-      // It is to be made anew: more cells may tell what a few do not.
-      take(constant, false);
-      rough.push_back(t);
-      unmet_ = known;
-    }
-  }
+  Observer nobody;
+  Progress alone(nobody, std::nullopt);
+  Progress& its = progress ? *progress : alone;
+  const double largest = largest_at_centroids(body, mesh, its);
+  found_.number_of.reserve(count);
+  in_parts(
+      count, its, [&](Part part, Progress& own) { return find(body, mesh, constant, largest, part, own); },
+      [&](Found found) { found_.append(std::move(found)); });
   // One that has no cells would be off by as much as f.
+  const std::vector<int> rough = std::exchange(found_.rough, {});
   CellBudget budget{kCellsOfRoughLoads + kFirstCells * count, progress};
   for (std::size_t i = 0; i < rough.size(); ++i) {
-    ProjectedLoad& load = all_[number_of_[rough[i]]];
+    ProjectedLoad& load = found_.all[found_.number_of[rough[i]]];
     budget.share(
         rough.size() - i,
-        [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load); },
+        [&](CellBudget& own) { project_on(body, mesh.corners(rough[i]), largest, own, load, found_.unmet); },
         kCellsOfRoughLoads);
   }
 }
 
-void LoadProjection::take(ProjectedLoad load, bool may_be_shared) {
-  if (!may_be_shared || !last_may_be_shared_ || all_.back() != load) all_.push_back(std::move(load));
-  number_of_.push_back(static_cast<int>(all_.size()) - 1);
-  last_may_be_shared_ = may_be_shared;
+LoadProjection::Found LoadProjection::find(const VectorField& body, const Mesh& mesh,
+                                           const ProjectedLoad& constant, double largest, Part part,
+                                           Progress& progress) {
+  Found found;
+  for (int begin = part.begin; begin < part.end; begin += kNeighbours) {
+    progress.check();
+    const int end = std::min(begin + kNeighbours, part.end);
+    ProjectedLoad of_all = constant;
+    const bool is_constant = is_constant_on(body, box_around(mesh, begin, end), largest, of_all);
+    for (int t = begin; t < end; ++t) {
+      if (is_constant) {
+        found.take(of_all);
+        continue;
+      }
+      ProjectedLoad own = constant;
+      CellBudget budget{kFirstCells * body.size(), &progress};
+      const std::vector<std::string> known = found.unmet;
+      if (project_on(body, mesh.corners(t), largest, budget, own, found.unmet)) {
+        found.take(std::move(own));
+        continue;
+      }
+      // It is to be made anew: more cells may tell what a few do not.
+      found.take(constant, false);
+      found.rough.push_back(t);
+      found.unmet = known;
+    }
+  }
+  return found;
+}
+
+void LoadProjection::Found::take(ProjectedLoad load, bool may_be_shared) {
+  if (all.empty()) first_may_be_shared = may_be_shared;
+  if (!may_be_shared || !last_may_be_shared || all.back() != load) all.push_back(std::move(load));
+  number_of.push_back(static_cast<int>(all.size()) - 1);
+  last_may_be_shared = may_be_shared;
+}
+
+void LoadProjection::Found::append(Found next) {
+  const bool is_shared = last_may_be_shared && next.first_may_be_shared && all.back() == next.all.front();
+  const int first = static_cast<int>(all.size()) - (is_shared ? 1 : 0);
+  std::move(next.all.begin() + (is_shared ? 1 : 0), next.all.end(), std::back_inserter(all));
+  for (const int number : next.number_of) number_of.push_back(first + number);
+  last_may_be_shared = next.last_may_be_shared;
+  rough.insert(rough.end(), next.rough.begin(), next.rough.end());
+  if (unmet.empty()) unmet = std::move(next.unmet);
 }
 
 ProjectedLoad ProjectedLoad::plus(double z, const ProjectedLoad& other) const {
@@ -121,15 +158,15 @@ ProjectedLoad ProjectedLoad::plus(double z, const ProjectedLoad& other) const {
 }
 
 bool LoadProjection::project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
-                                CellBudget& budget, ProjectedLoad& load) {
+                                CellBudget& budget, ProjectedLoad& load, std::vector<std::string>& unmet) {
   const double twice_area = AffineMap(corners).determinant;
   double rest_square = 0, unbalanced_square = 0;
   bool is_enough = true;
   for (int c = 0; c < body.size(); ++c) {
     const Field& field = body.fields()[c];
     if (field.is_constant()) continue;
-    if (!field.formula() && unmet_.empty())
-      unmet_.push_back(field.name() + " is a function that is known in single points only: give a formula");
+    if (!field.formula() && unmet.empty())
+      unmet.push_back(field.name() + " is a function that is known in single points only: give a formula");
     Projection own;
     budget.share(body.size() - c, [&](CellBudget& part) {
       own = project(field, corners,
@@ -137,8 +174,8 @@ bool LoadProjection::project_on(const VectorField& body, const std::array<Point,
                     part);
       is_enough = is_enough && part.cells > 0;
     });
-    if (!own.is_finite && unmet_.empty())
-      unmet_.push_back(not_known_to_be_finite(field, (corners[0] + corners[1] + corners[2]) / 3));
+    if (!own.is_finite && unmet.empty())
+      unmet.push_back(not_known_to_be_finite(field, (corners[0] + corners[1] + corners[2]) / 3));
     const bool leaves = own.jumps && own.rest > std::max(kMuch * own.between, kEnclosureRounding * largest);
     load.jumps = load.jumps || leaves;
     load.projection.row(c) = own.quadratic;

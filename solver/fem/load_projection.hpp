@@ -5,7 +5,7 @@
 
 #include "mesh/mesh.hpp"
 #include "problem/problem.hpp"
-#include "progress/progress.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 
@@ -36,26 +36,38 @@ class LoadProjection {
   /// `progress` may be null; else throws what it throws.
   LoadProjection(const Problem& problem, const Mesh& mesh, Progress* progress = nullptr);
 
-  const ProjectedLoad& operator[](int t) const { return all_[number_of_.empty() ? 0 : number_of_[t]]; }
+  const ProjectedLoad& operator[](int t) const {
+    return found_.all[found_.number_of.empty() ? 0 : found_.number_of[t]];
+  }
   /// It is not known to be 0.
-  bool is_any() const { return varies() || !all_[0].projection.isZero(0); }
+  bool is_any() const { return varies() || !found_.all[0].projection.isZero(0); }
   /// f is not the same all over some triangle.
-  bool varies() const { return !number_of_.empty(); }
+  bool varies() const { return !found_.number_of.empty(); }
   /// Why what it says of f is not certain; empty if it is.
-  const std::vector<std::string>& unmet() const { return unmet_; }
+  const std::vector<std::string>& unmet() const { return found_.unmet; }
 
  private:
-  /// `largest`: of |f|. Returns false if a component could do with more cells than its share of the budget.
-  bool project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
-                  CellBudget& budget, ProjectedLoad& load);
+  /// What is found of triangles that follow each other.
+  struct Found {
+    std::deque<ProjectedLoad> all;  ///< grows without being copied: that of a large mesh takes half a second
+    std::vector<int> number_of;     ///< of each triangle that in `all`
+    bool first_may_be_shared = false, last_may_be_shared = false;
+    std::vector<int> rough;  ///< triangles that could do with more cells
+    std::vector<std::string> unmet;
 
-  /// Of the next triangle; if it is that of the last one and neither is to change, both share it.
-  void take(ProjectedLoad load, bool may_be_shared = true);
+    /// Of the next triangle; if it is that of the last one and neither is to change, both share it.
+    void take(ProjectedLoad load, bool may_be_shared = true);
+    void append(Found next);
+  };
 
-  std::deque<ProjectedLoad> all_;  ///< grows without being copied: that of a large mesh takes half a second
-  std::vector<int> number_of_;     ///< of each triangle that in `all_`; none if they have one for all
-  bool last_may_be_shared_ = false;
-  std::vector<std::string> unmet_;
+  /// `largest`: of |f|, here and below.
+  static Found find(const VectorField& body, const Mesh& mesh, const ProjectedLoad& constant, double largest,
+                    Part part, Progress& progress);
+  /// Returns false if a component could do with more cells than its share of the budget.
+  static bool project_on(const VectorField& body, const std::array<Point, 3>& corners, double largest,
+                         CellBudget& budget, ProjectedLoad& load, std::vector<std::string>& unmet);
+
+  Found found_;  ///< without numbers if all triangles have one load
 };
 
 }  // namespace signorini
