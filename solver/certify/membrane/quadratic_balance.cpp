@@ -60,8 +60,15 @@ bool QuadraticBalance::is_needed() const {
   for (int edge = 0; edge < static_cast<int>(discrete_.mesh.edges.size()); ++edge)
     if (discrete_.traction.acts_on(edge) && !lacking_on(edge).isZero(0)) return true;
   if (!discrete_.body.varies()) return false;
-  for (int t = 0; t < discrete_.triangles(); ++t)
-    if ((*this)(t)) return true;
+  const ProjectedLoad* constant = nullptr;  // most triangles share theirs with the one before
+  for (int t = 0; t < discrete_.triangles(); ++t) {
+    const ProjectedLoad& own = discrete_.body[t];
+    if (&own == constant) continue;
+    if ((own.balanced.colwise() - own.balanced.col(0)).isZero(0))
+      constant = &own;
+    else if ((*this)(t))
+      return true;
+  }
   return false;
 }
 
