@@ -24,6 +24,9 @@ class IdleCores : public Executor {
   IdleCores(const IdleCores&) = delete;
   IdleCores& operator=(const IdleCores&) = delete;
 
+  /// That are at work in one solve at most: its own, and the helpers.
+  int threads() const { return cores_; }
+
   void run(int count, const std::function<void(int)>& work, const std::function<void()>& waiting) override;
 
   /// A solve on this thread, which occupies a core while it lives.

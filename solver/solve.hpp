@@ -22,6 +22,7 @@ struct Estimate {
   double solution_bytes = 0;    ///< of them, what its solution keeps
   double entry_bytes = 0;       ///< what each entry of a sweep adds
   double kept_bytes = 0;        ///< what a sweep keeps for its quantities
+  double helper_bytes = 0;      ///< what each thread of the executor adds
   double seconds = 0;           ///< from a fit to measured solves
 };
 

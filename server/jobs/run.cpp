@@ -84,6 +84,7 @@ Solution solve_request(const api::Request& request, Observer& observer, Operator
   const MemoryMeter memory;
   Settings settings = request.settings;
   settings.executor = &cores;
+  settings.threads = cores.threads();
   Solution solution = solve(request.problem, request.sweep, settings, observer, operators);
   if (request.study && observer.keep_going()) {
     settings.spent += solution.summary.timings.total;

@@ -102,6 +102,7 @@ void Scheduler::count_memory(const Claim& claim) {
   try {
     api::Request request = api::parse_request(*claim.problem);
     request.settings.factorization = by_;
+    request.settings.threads = cores();
     const Estimates foreseen = estimate(request.problem, request.sweep, request.study, request.settings);
     memory_.add(claim.job.id, foreseen.memory_bytes(), claim.job.owner);
   } catch (const std::exception&) {

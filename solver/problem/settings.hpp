@@ -44,6 +44,7 @@ struct Settings {
       false;  ///< only the entries of the sweep are asked for, not the problem's own solution
   Helpers* helpers = nullptr;    ///< with the sweep, if there are any
   Executor* executor = nullptr;  ///< on cores that nobody else wants, if there are any
+  int threads = 1;  ///< that are at work in the solve at most: its own, and those of the executor
 };
 
 }  // namespace signorini

@@ -108,12 +108,9 @@ void side_by_side(int count, Progress& progress, const std::function<void(int, P
 }
 
 void in_parts(int count, Progress& progress, const std::function<void(Part, Progress&)>& work) {
-  // A millisecond where a triangle has little to do, which is many times what a part has to prepare. Where it
-  // has much, the last part of a helper that others keep from its core is waited for.
-  constexpr int most = 1 << 11;
-  side_by_side((count - 1) / most + (count > 0), progress, [&](int number, Progress& own) {
-    const int begin = number * most;
-    work({begin, std::min(count, begin + most)}, own);
+  side_by_side((count - 1) / kPart + (count > 0), progress, [&](int number, Progress& own) {
+    const int begin = number * kPart;
+    work({begin, std::min(count, begin + kPart)}, own);
   });
 }
 

@@ -21,6 +21,11 @@ struct Part {
   int begin, end;
 };
 
+/// Of the numbers that a part has: a millisecond where a triangle has little to do, which is many times what
+/// a part has to prepare. Where it has much, the last part of a helper that others keep from its core is
+/// waited for.
+inline constexpr int kPart = 1 << 11;
+
 /// Goes through 0, …, count − 1 in parts, side by side. What the parts are depends on the count alone, so
 /// that what they find is the same to the last bit whoever does them.
 void in_parts(int count, Progress& progress, const std::function<void(Part, Progress&)>& work);

@@ -6,6 +6,7 @@
 #include "estimation.hpp"
 #include "memory_estimate.hpp"
 #include "mesh/mesh_sizes.hpp"
+#include "progress/in_parts.hpp"
 
 namespace signorini {
 
@@ -29,6 +30,12 @@ double seconds_of_iterations(const PaperUzawa& method, const Estimate& estimate)
          std::min(iterations, method.max_iterations);
 }
 
+/// A mesh of one part has none.
+double memory_of_helpers(const Estimate& estimate, const Settings& settings) {
+  const std::int64_t others = (estimate.triangles - 1) / kPart;
+  return static_cast<double>(std::min<std::int64_t>(settings.threads - 1, others)) * estimate.helper_bytes;
+}
+
 }  // namespace
 
 Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entries) {
@@ -39,6 +46,7 @@ Estimate for_solve(Estimate estimate, const Settings& settings, std::size_t entr
         std::max(estimate.memory_bytes + estimate.solution_bytes, estimate.paper_form_bytes);
     estimate.seconds += static_cast<double>(1 + entries) * seconds_of_iterations(*paper, estimate);
   }
+  estimate.memory_bytes += memory_of_helpers(estimate, settings);
   estimate.memory_bytes += std::visit(
       [](const auto& method) { return memory_of_history(method.max_iterations); }, settings.method);
   // A sweep has a second solution, to which its entries refer, and what they share.

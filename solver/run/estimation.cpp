@@ -413,6 +413,7 @@ Estimate Estimation::estimate_of(const Counts& counts, const Estimate* pulled) c
   estimate.solution_bytes = memory_of_solution(spaces, sizes.triangles);
   if (problem_.mesh.adaptive) estimate.solution_bytes += memory_of_levels(spaces, sizes.triangles);
   estimate.entry_bytes = memory_of_entry(contact);
+  estimate.helper_bytes = memory_of_helper(problem_, spaces, sizes);
   estimate.seconds = 1e-3 + 8e-8 * entries + 1.2e-9 * std::pow(n, 1.5) + 1e-10 * std::pow(contact, 3) +
                      seconds_of_law(problem_.material, spaces, sizes.triangles) +
                      seconds_of_shapes(problem_.material, spaces, sizes.own_shapes * sizes.triangles) +

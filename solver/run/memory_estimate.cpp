@@ -10,7 +10,7 @@
 #include "fem/per_shape.hpp"
 #include "fem/trace_space.hpp"
 #include "mesh/rectangle.hpp"
-#include "progress/observer.hpp"
+#include "progress/in_parts.hpp"
 #include "system/elimination.hpp"
 
 namespace signorini {
@@ -214,17 +214,20 @@ double tables_of_jumps(const Spaces& spaces) {
   return spaces.components == 1 ? 3.9e6 : 0.6e6;
 }
 
-/// What any certificate takes: tables of shapes, of what a load that jumps leaves, patches of a membrane
-/// where its pressure changes, and the cells or points of one triangle on which the law is cut into pieces.
-/// As measured.
-double tables(const Problem& problem, const Spaces& spaces) {
-  const bool is_membrane = spaces.components == 1;
-  const double of_shapes = 8e5, of_patches = 3e6, of_points = 4e6, of_cells = 3e5;
+/// What each thread takes that certifies: tables of shapes, of what a load that jumps leaves, and the cells
+/// or points of one triangle on which the law is cut into pieces. As measured.
+double tables_of_thread(const Problem& problem, const Spaces& spaces) {
+  const double of_shapes = 8e5, of_points = 4e6, of_cells = 3e5;
   return of_shapes + (is_uniform(problem.body) ? 0 : tables_of_jumps(spaces)) +
-         (is_membrane && spaces.order == 1 ? of_patches : 0) +
          (is_constant(problem.material) ? 0
-          : is_membrane                 ? of_cells
+          : spaces.components == 1      ? of_cells
                                         : of_points);
+}
+
+/// And patches of a membrane where its pressure changes.
+double tables(const Problem& problem, const Spaces& spaces) {
+  constexpr double of_patches = 3e6;
+  return tables_of_thread(problem, spaces) + (spaces.components == 1 && spaces.order == 1 ? of_patches : 0);
 }
 
 }  // namespace
@@ -382,6 +385,13 @@ double memory_of_solve(const Problem& problem, const Spaces& spaces, const Solve
                                               3 * kNumber * d + sizes.own_shapes * 9 * d * d * kNumber);
   return slack(spaces) *
          (all_along(problem, spaces, sizes) + std::max({factoring, finding, certifying, enclosing}));
+}
+
+double memory_of_helper(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes) {
+  // The forms of a part grow, up to twice what they are.
+  const double forms = spaces.components == 1 ? 0 : 2 * kPart * relaxation(sizes.own_shapes);
+  return slack(spaces) *
+         std::max(shapes_of_recovery(problem, sizes), tables_of_thread(problem, spaces) + forms);
 }
 
 double memory_at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, Factorization by,

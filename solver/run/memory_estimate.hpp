@@ -32,6 +32,10 @@ enum class Afterwards { let_go, used_again };
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is);
 
+/// What a thread that helps a solve takes beside what the solve does: tables of its own, and a part of what
+/// the triangles make, which waits for its turn.
+double memory_of_helper(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes);
+
 /// What such a solve holds once its error is bounded, while another body is solved for its quantities.
 double memory_at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, Factorization by,
                       Afterwards factor_is);

@@ -15,6 +15,7 @@
 #include "problems/families.hpp"
 #include "problems/long_tests.hpp"
 #include "problems/sanitized.hpp"
+#include "problems/threads.hpp"
 #include "progress/memory_meter.hpp"
 #include "run/study.hpp"
 
@@ -386,6 +387,35 @@ TEST_P(Memory, OfMeansOverTinyDiscs) {
   fine.quantities = varying.quantities = sagging.quantities;
   fine.material = varying.material = MembraneStiffness::isotropic(problems::formula("2 + sin(5*x)"));
   for (const Problem& problem : {sagging, pressed, fine, varying}) expect_no_more(problem);
+}
+
+/// Each has tables of its own and a part of what the triangles make.
+TEST_P(Memory, OfThoseWhoHelpIsCounted) {
+  // A membrane that touches nearly everywhere takes the most while its fields are found.
+  Problem touching = membrane(GetParam(), 4, 4);
+  touching.boundary = {{"left", Fixed{}},
+                       {"bottom", Contact{Field(0.01)}},
+                       {"right", Contact{problems::formula("0.02*(1 - 0.925*sin(x + y))")}},
+                       {"top", Contact{Field(0.01)}}};
+  touching.body = VectorField(-3);
+  Problem uneven = in_polygon(touching, 0.03);
+  uneven.body = VectorField(problems::formula("(x - 0.5)^2 + y^2 < 0.1 ? 10 : -1"));
+  for (const int count : {2, 5}) {
+    Threads threads(count);
+    Settings settings{ActiveSet{}, std::nullopt};
+    settings.executor = &threads;
+    settings.threads = count;
+    for (const double size : {0.046, 0.023}) {
+      touching.domain = Polygon{{{0, 0}, {0.4, 0}, {0.4, 3}, {0, 3}},
+                                {{{0.12, 1.2}, {0.24, 1.05}, {0.2, 2.1}}},
+                                {"bottom", "right", "top", "left"}};
+      touching.mesh = {};
+      touching.mesh.fineness = LargestEdge{size};
+      expect_bound(touching, settings, count * tables);
+    }
+    expect_bound(uneven, settings, count * tables);
+    expect_bound(in_polygon(elastic(GetParam(), 4, 4), 0.03), settings, count * tables);
+  }
 }
 
 /// Of each piece there are two kinds, by where its diagonals begin.
