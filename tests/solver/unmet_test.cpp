@@ -117,6 +117,23 @@ TEST(Guaranteed, IsTheContactTermOfAPressureThatTakesWhatIsNotKnown) {
   EXPECT_NEAR(std::pow(bound.parts.contact, 2), (1 + change) * square, 0.1 * change * square);
 }
 
+/// A peak of the foundation that the mesh does not see leaves nothing but rounding.
+TEST(Unmet, OfAMembraneAtRestIsNotItsLaw) {
+  Problem problem;
+  problem.domain = Polygon{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {}, {"bottom", "right", "top", "left"}};
+  problem.mesh.fineness = LargestEdge{0.1};
+  for (const double radius : {3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1})
+    problem.mesh.sizes.push_back({{0.31234, 0}, radius, radius / 6});
+  problem.material = MembraneStiffness::isotropic(Field(1));
+  problem.boundary = {{"top", Fixed{}},
+                      {"bottom", Contact{problems::formula("1 - 1.1*max(0, 1 - 1e4*abs(x - 0.31234))")}}};
+  problem.scheme = Scheme::nonconforming;
+  const std::vector<std::string> reasons = unmet(problem);
+  ASSERT_FALSE(reasons.empty());
+  EXPECT_EQ(reasons[0].find("law"), std::string::npos) << reasons[0];
+  EXPECT_NE(reasons[0].find("hardly any stress"), std::string::npos) << reasons[0];
+}
+
 /// Two triangles that have a corner in common, and no more: around it no way meets both.
 TEST(Unmet, IsABodyThatTouchesItselfInAPoint) {
   Problem problem = block();
