@@ -133,6 +133,7 @@ void serve(const DaemonConfig& config, const StopSignals& signals, std::atomic<b
   Access access = access_of(config);
   Limits limits{config.max_body_bytes, config.max_unknowns, max_memory};
   limits.factorization = config.factorization;
+  limits.threads = idle.threads();
   Service service{*store, scheduler, events, access, limits, operators, metrics};
   const Router router = config.role == Role::worker ? routes_of_worker(service) : routes(service);
   Listener listener(listener_options(config), router);

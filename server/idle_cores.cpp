@@ -5,6 +5,7 @@
 namespace signorini::server {
 namespace {
 
+/// A solve that waits for its helpers looks so often whether it is cancelled.
 constexpr std::chrono::milliseconds kLook{5};
 /// Most pieces take a millisecond. One that is half of a certificate takes seconds, in which it shares its
 /// core: who has just begun must hear cancels.

@@ -7,7 +7,6 @@
 #include <malloc.h>
 
 #include "api/document/cbor_document.hpp"
-#include "server/cores.hpp"
 #include "server/http/content.hpp"
 #include "server/http/error.hpp"
 #include "server/http/media_type.hpp"
@@ -143,7 +142,7 @@ Intake judge(std::string text, const Request& request, const Limits& limits) {
   intake.text = std::move(text);
   intake.request = api::parse_request(intake.text, &observer);
   intake.request.settings.factorization = limits.factorization;
-  intake.request.settings.threads = cores();
+  intake.request.settings.threads = limits.threads;
   observer.check();
   intake.foreseen = estimate(intake.request.problem, intake.request.sweep, intake.request.study,
                              intake.request.settings, limits.max_unknowns);

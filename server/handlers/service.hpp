@@ -23,6 +23,7 @@ struct Limits {
   std::size_t max_result_bytes = 256 << 20;  ///< of results from which replies are written at the same time
   std::size_t max_waits = 4096;              ///< clients that may wait for their solves at the same time
   Factorization factorization = Factorization::multifrontal;  ///< by which memory is predicted
+  int threads = 1;                                            ///< of a solve, by which too
 };
 
 /// What the handlers work on.

@@ -30,9 +30,13 @@ namespace {
 constexpr int backlog = SOMAXCONN;
 constexpr int nowhere = -1;
 
+std::size_t one_a_core() {
+  return static_cast<std::size_t>(cores());
+}
+
 /// Some more than there are cores, for those that wait for the disk.
 std::size_t most_at_work() {
-  return std::max<std::size_t>(8, 2 * static_cast<std::size_t>(cores()));
+  return std::max<std::size_t>(8, 2 * one_a_core());
 }
 
 /// Readers of long bodies: one reads while others wait for the disk.
@@ -162,10 +166,10 @@ class Listener::Impl {
         pool_(most_at_work(), most_at_work()),
         probe_pool_(2, 2),
         // What is read, written or compressed for long keeps a core busy.
-        takers_(most_at_work(), static_cast<std::size_t>(cores())),
+        takers_(most_at_work(), one_a_core()),
         readers_(readers, 1),
-        carriers_(options.long_replies, static_cast<std::size_t>(cores())),
-        list_carriers_(options.long_replies, static_cast<std::size_t>(cores())),
+        carriers_(options.long_replies, one_a_core()),
+        list_carriers_(options.long_replies, one_a_core()),
         hatch_({},
                [this](std::shared_ptr<Connection> connection, bool goes_on) {
                  connection->keep_place(pending_.take_place());
