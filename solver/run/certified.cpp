@@ -1,5 +1,9 @@
 #include "run/certified.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "certify/reactions/reactions.hpp"
 #include "result/in_range.hpp"
 
@@ -22,6 +26,42 @@ void add_supports(const Discretization& discrete, std::shared_ptr<const ElementT
     return;
   }
   certified.supports = Reactions(discrete, solution, extensions, progress).all(certified.unmet, progress);
+}
+
+/// The support whose pressure a quantity is, times a constant; null if it is another quantity.
+const CertifiedSupport* support_of(const Quantity& quantity, const Certified& certified) {
+  if (!quantity.has_no_loads() || !quantity.motions.empty() || quantity.weights.size() != 1) return nullptr;
+  const std::string& part = quantity.weights.begin()->first;
+  if (!quantity.weights.begin()->second.is_constant()) return nullptr;
+  const auto found = std::ranges::find_if(certified.supports, [&](const CertifiedSupport& support) {
+    return support.pressure_force && support.pressure_force->is_bounded() &&
+           support.parts == std::vector{part};
+  });
+  return found == certified.supports.end() ? nullptr : &*found;
+}
+
+/// What its support takes encloses a quantity, too: where the mesh does not see a peak of the gap, that knows
+/// of the quantity next to nothing.
+void narrow(const Quantity& quantity, const CertifiedSupport& support, EnclosedQuantity& enclosed) {
+  const double weight = quantity.weights.begin()->second(Point::Zero());
+  const auto times_weight = [&](double end, double outward) {
+    const bool is_exact = end == 0 || std::abs(weight) == 1;
+    return is_exact ? weight * end : std::nextafter(weight * end, outward);
+  };
+  constexpr double anything = std::numeric_limits<double>::infinity();
+  const EnclosedNumber& force = *support.pressure_force;
+  double lower = times_weight(weight < 0 ? force.upper : force.lower, -anything),
+         upper = times_weight(weight < 0 ? force.lower : force.upper, anything);
+  if (enclosed.guaranteed) {
+    lower = std::max(lower, enclosed.lower);
+    upper = std::min(upper, enclosed.upper);
+  }
+  if (!(lower <= upper)) return;  // by rounding
+  enclosed.lower = lower;
+  enclosed.upper = upper;
+  enclosed.estimate = estimate_within(enclosed.value, lower, upper);
+  enclosed.guaranteed = true;
+  enclosed.unmet.clear();
 }
 
 }  // namespace
@@ -58,6 +98,9 @@ void add_certified(const Problem& problem, const Settings& settings, Progress& p
     certified.supports.clear();
     certified.unmet.push_back("what supports take leaves the range of double precision");
   }
+  for (std::size_t i = 0; i < summary.quantities.size(); ++i)
+    if (const CertifiedSupport* support = support_of(problem.quantities[i], certified))
+      narrow(problem.quantities[i], *support, summary.quantities[i]);
   summary.certified = std::move(certified);
   const double seconds = progress.seconds() - begin;
   summary.timings.certify += seconds;

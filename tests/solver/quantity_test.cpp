@@ -70,6 +70,28 @@ Problem block(Scheme scheme, int n) {
   return problem;
 }
 
+/// A peak of the foundation that the mesh does not see leaves the quantity by itself with [0, 1e86].
+TEST(QuantityOfAContact, IsNoWiderThanWhatThatSurelyTakes) {
+  for (const double weight : {1., -2.5}) {
+    Problem problem = problems::paper(Scheme::nonconforming, 8);
+    problem.body = {};
+    problem.boundary = {{"top", Fixed{}},
+                        {"bottom", Contact{problems::formula("1 - 1.1*max(0, 1 - 1e4*abs(x - 0.31234))")}}};
+    problem.quantities = {pressure_force("bottom", Field(weight))};
+    const Solution solution = solve(problem, {ActiveSet{}, {}});
+    const EnclosedQuantity& own = solution.summary.quantities.at(0);
+    const EnclosedNumber* force = nullptr;
+    for (const CertifiedSupport& support : solution.summary.certified.value().supports)
+      if (support.pressure_force && support.parts[0] == "bottom") force = &*support.pressure_force;
+    ASSERT_NE(force, nullptr);
+    EXPECT_TRUE(own.guaranteed);
+    constexpr double rounding = 1 + 1e-15;
+    EXPECT_GE(own.lower, std::min(weight * force->lower, weight * force->upper) * rounding);
+    EXPECT_LE(own.upper, std::max(weight * force->lower, weight * force->upper) * rounding);
+    EXPECT_LT(own.upper - own.lower, 1);
+  }
+}
+
 struct Goal {
   Scheme scheme;
   int divisions;
