@@ -1,10 +1,9 @@
 #include "run/certified.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "certify/reactions/reactions.hpp"
+#include "formula/interval.hpp"
 #include "result/in_range.hpp"
 
 namespace signorini {
@@ -43,23 +42,12 @@ const CertifiedSupport* support_of(const Quantity& quantity, const Certified& ce
 /// What its support takes encloses a quantity, too: where the mesh does not see a peak of the gap, that knows
 /// of the quantity next to nothing.
 void narrow(const Quantity& quantity, const CertifiedSupport& support, EnclosedQuantity& enclosed) {
-  const double weight = quantity.weights.begin()->second(Point::Zero());
-  const auto times_weight = [&](double end, double outward) {
-    const bool is_exact = end == 0 || std::abs(weight) == 1;
-    return is_exact ? weight * end : std::nextafter(weight * end, outward);
-  };
-  constexpr double anything = std::numeric_limits<double>::infinity();
   const EnclosedNumber& force = *support.pressure_force;
-  double lower = times_weight(weight < 0 ? force.upper : force.lower, -anything),
-         upper = times_weight(weight < 0 ? force.lower : force.upper, anything);
-  if (enclosed.guaranteed) {
-    lower = std::max(lower, enclosed.lower);
-    upper = std::min(upper, enclosed.upper);
-  }
-  if (!(lower <= upper)) return;  // by rounding
-  enclosed.lower = lower;
-  enclosed.upper = upper;
-  enclosed.estimate = estimate_within(enclosed.value, lower, upper);
+  Interval ends = quantity.weights.begin()->second(Point::Zero()) * Interval(force.lower, force.upper);
+  if (enclosed.guaranteed) ends = intersection(ends, {enclosed.lower, enclosed.upper});
+  enclosed.lower = ends.lower();
+  enclosed.upper = ends.upper();
+  enclosed.estimate = estimate_within(enclosed.value, enclosed.lower, enclosed.upper);
   enclosed.guaranteed = true;
   enclosed.unmet.clear();
 }

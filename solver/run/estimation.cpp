@@ -354,22 +354,18 @@ double Estimation::own_shapes(double triangles) const {
 
 Estimate Estimation::operator()() {
   const Counts counts = count();
-  std::optional<Estimate> pulled;
-  if (pulled_) pulled = (*pulled_)(problem_.mesh, problem_.scheme);
   return estimate_of(problem_.mesh.adaptive ? grown(counts, *problem_.mesh.adaptive) : counts,
-                     pulled ? &*pulled : nullptr);
+                     pulled_ ? std::optional((*pulled_)(problem_.mesh, problem_.scheme)) : std::nullopt);
 }
 
 Estimate Estimation::operator()(const Mesh& mesh) {
   cut(mesh);
-  std::optional<Estimate> pulled;
-  if (pulled_) pulled = (*pulled_)(mesh);
   return estimate_of(counts_of(sizes_of(mesh), make_clearance_space(problem_, mesh).unknowns),
-                     pulled ? &*pulled : nullptr);
+                     pulled_ ? std::optional((*pulled_)(mesh)) : std::nullopt);
 }
 
-/// `pulled`: that of the body that an opening's weight pulls, on the same mesh; null if there is none.
-Estimate Estimation::estimate_of(const Counts& counts, const Estimate* pulled) const {
+/// `pulled`: that of the body that an opening's weight pulls, on the same mesh, if there is one.
+Estimate Estimation::estimate_of(const Counts& counts, const std::optional<Estimate>& pulled) const {
   const Spaces& spaces = spaces_of(problem_.scheme, components(problem_.material));
   Estimate estimate;
   estimate.triangles = counts.triangles;

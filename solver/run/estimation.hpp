@@ -82,7 +82,7 @@ class Estimation {
   MeshSizes sizes_by(const MeshRequest& request);
   Counts count();
   Counts counts_of(const MeshSizes& sizes, std::int64_t contact) const;
-  Estimate estimate_of(const Counts& counts, const Estimate* pulled) const;
+  Estimate estimate_of(const Counts& counts, const std::optional<Estimate>& pulled) const;
   template <typename EdgesOfPart>
   void cut(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles,
            const EdgesOfPart& edges_of, Shows shows);

@@ -323,9 +323,13 @@ double shapes_of_recovery(const Problem& problem, const SolveSizes& sizes) {
 
 namespace {
 
+double complement_of(const SolveSizes& sizes) {
+  return kNumber * sizes.contact * sizes.contact;
+}
+
 /// The factor, with the complement of the contact unknowns.
 double whole(const FactorBytes& made, const SolveSizes& sizes) {
-  return made.panels + made.fronts + kNumber * sizes.contact * sizes.contact;
+  return made.panels + made.fronts + complement_of(sizes);
 }
 
 /// The traces as they were found, and the solution.
@@ -343,8 +347,7 @@ bool is_kept(const Problem& problem, Afterwards factor_is) {
 double at_rest(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes, const FactorBytes& made,
                Afterwards factor_is) {
   const double others = 2 * kNumber * sizes.system;
-  const double complements =
-      factor_is == Afterwards::used_again ? 2 * kNumber * sizes.contact * sizes.contact : 0;
+  const double complements = factor_is == Afterwards::used_again ? 2 * complement_of(sizes) : 0;
   const double kept = is_kept(problem, factor_is) ? whole(made, sizes) + others + complements : 0;
   return kept + found(spaces, sizes) + sizes.triangles * kNumber * spaces.stresses() + pair(problem, sizes) +
          tables(problem, spaces);
@@ -363,7 +366,7 @@ double all_along(const Problem& problem, const Spaces& spaces, const SolveSizes&
 double memory_of_solve(const Problem& problem, const Spaces& spaces, const SolveSizes& sizes,
                        Factorization by, Afterwards factor_is) {
   const FactorBytes made = factor_of(problem, spaces, sizes, by);
-  const double complement = kNumber * sizes.contact * sizes.contact;
+  const double complement = complement_of(sizes);
   const double factor = whole(made, sizes);
   const double kept = is_kept(problem, factor_is) ? factor : 0;
   const double right = kNumber * sizes.system;
