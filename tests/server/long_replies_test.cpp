@@ -168,7 +168,7 @@ class SharedResultsTest : public testing::Test {
   SharedResultsTest() : store_(directory_.path(), {100, plenty, std::chrono::hours(1)}) {
     for (const char* id : {"a", "b"}) {
       store_.add(new_job(id));
-      store_.finish(*store_.claim(), success(3 * megabyte));
+      store_.finish(store_.claim().value(), success(3 * megabyte));
     }
   }
 

@@ -15,8 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using postgres::Connection;
 
-constexpr auto lease = 300ms;
-
 class PostgresChunks : public testing::Test {
  protected:
   PostgresChunks() = default;
@@ -24,7 +22,7 @@ class PostgresChunks : public testing::Test {
   /// A job of an owner that a worker has claimed and split into chunks of two entries.
   Claim add_whole(const std::string& id, std::size_t chunks) {
     add(id, "anne");
-    const Claim whole = *a_.claim();
+    const Claim whole = a_.claim().value();
     std::vector<NewChunk> new_chunks;
     for (std::size_t i = 0; i < chunks; ++i)
       new_chunks.push_back({1 + 2 * i, 2, "chunk " + std::to_string(i), 10});
@@ -56,20 +54,20 @@ class PostgresChunks : public testing::Test {
 
   const std::string url_ = empty_database();
   const StoreLimits limits_{2, plenty, std::chrono::hours(1)};
-  postgres::Store a_{url_, limits_, lease}, b_{url_, limits_, lease};
+  postgres::Store a_{url_, limits_, lease_of_stores}, b_{url_, limits_, lease_of_stores};
   Fleet& fleet_ = *a_.fleet();
 };
 
 TEST_F(PostgresChunks, AreClaimedByAnybodyAndSeenByNobody) {
   const Claim whole = add_whole("a", 3);
-  const Claim chunk = *b_.claim();
+  const Claim chunk = b_.claim().value();
   EXPECT_EQ(*chunk.problem, "chunk 0");
   EXPECT_EQ(chunk.job.owner, "anne");
   EXPECT_EQ(chunk.job.chunk->whole, "a");
   EXPECT_EQ(chunk.job.chunk->first, 1u);
   EXPECT_EQ(chunk.job.chunk->count, 2u);
   EXPECT_EQ(chunk.job.created, whole.job.started);
-  const Claim own = *fleet_.claim_chunk("a");
+  const Claim own = fleet_.claim_chunk("a").value();
   EXPECT_EQ(own.job.chunk->first, 3u);
   EXPECT_EQ(a_.count(), (JobCounts{{JobStatus::running, 1}}));
   EXPECT_EQ(ids(a_.list({})), std::vector<std::string>{"a"});
@@ -114,7 +112,7 @@ TEST_F(PostgresChunks, ComeBeforeWhatElseTheirOwnerHasQueued) {
 
 TEST_F(PostgresChunks, AreAskedToEndWithTheWhole) {
   const Claim whole = add_whole("a", 2);
-  const Claim chunk = *b_.claim();
+  const Claim chunk = b_.claim().value();
   EXPECT_EQ(standing_of(chunk), Standing::held);
   EXPECT_EQ(a_.cancel("a"), Cancellation::asked);
   EXPECT_EQ(standing_of(chunk), Standing::to_be_cancelled);
@@ -128,7 +126,7 @@ TEST_F(PostgresChunks, AreRescuedByThemselvesAndOutliveTheRunnerOfTheWhole) {
   const Claim whole = add_whole("a", 1);
   ask("UPDATE leases SET until = until + 60000");  // what follows may take longer than a lease
   for (int attempt = 1; attempt <= 3; ++attempt) {
-    const Claim chunk = *b_.claim();
+    const Claim chunk = b_.claim().value();
     EXPECT_EQ(chunk.attempt, static_cast<std::uint64_t>(attempt));
     lose(chunk.job.id);
     EXPECT_FALSE(b_.finish(chunk, entries(2)));
@@ -138,7 +136,7 @@ TEST_F(PostgresChunks, AreRescuedByThemselvesAndOutliveTheRunnerOfTheWhole) {
   lose("a");
   EXPECT_EQ(fleet_.chunks("a").size(), 1u);
   EXPECT_FALSE(fleet_.split(whole, {}));
-  EXPECT_EQ(b_.claim()->job.id, "a");
+  EXPECT_EQ(b_.claim().value().job.id, "a");
   EXPECT_EQ(b_.cancel("a"), Cancellation::asked);
   lose("a");
   EXPECT_EQ(b_.find("a")->status, JobStatus::cancelled);

@@ -16,8 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 using postgres::Connection;
 
-constexpr auto lease = 300ms;
-
 class PostgresClaims : public testing::Test {
  protected:
   PostgresClaims() = default;
@@ -51,7 +49,7 @@ class PostgresClaims : public testing::Test {
 
   const std::string url_ = empty_database();
   const StoreLimits limits_{100'000, plenty, std::chrono::hours(1)};
-  postgres::Store a_{url_, limits_, lease}, b_{url_, limits_, lease};
+  postgres::Store a_{url_, limits_, lease_of_stores}, b_{url_, limits_, lease_of_stores};
 };
 
 /// Two that claim at the same time do not see each other.
@@ -137,13 +135,13 @@ TEST_F(PostgresClaims, WhatIsLargeIsPassedByWhatIsSmallForAWhileOnly) {
   EXPECT_EQ(passed, 16);
   // One in which it can never run goes on.
   EXPECT_TRUE(fleet.claim({.memory = 50, .most_memory = 60}));
-  EXPECT_EQ(fleet.claim({.memory = 100})->job.id, "large");
+  EXPECT_EQ(fleet.claim({.memory = 100}).value().job.id, "large");
   EXPECT_TRUE(fleet.claim({.memory = 50, .most_memory = 100}));
 }
 
 TEST_F(PostgresClaims, AreHeldWhenTheClockOfTheDatabaseIsSet) {
   add("a", "anne");
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   b_.fleet()->rescue();
   set_clock("1 hour");
   b_.fleet()->rescue();
@@ -152,21 +150,21 @@ TEST_F(PostgresClaims, AreHeldWhenTheClockOfTheDatabaseIsSet) {
   beat.job = "a";
   beat.attempt = claim.attempt;
   EXPECT_EQ(a_.fleet()->renew(std::span(&beat, 1)).front(), Standing::held);
-  std::this_thread::sleep_for(lease + 50ms);
+  std::this_thread::sleep_for(lease_of_stores + 50ms);
   b_.fleet()->rescue();
   EXPECT_EQ(b_.find("a")->status, JobStatus::queued);
 }
 
 TEST_F(PostgresClaims, NothingIsDroppedByAgeForADayWhenTheClockOfTheDatabaseWasSet) {
   add("a", "anne");
-  a_.finish(*a_.claim(), success());
+  a_.finish(a_.claim().value(), success());
   a_.tidy();
   set_clock("10 days");
   b_.tidy();
   EXPECT_TRUE(a_.find("a"));
   set_clock("2 hours");
   ask("UPDATE retention_clock SET seen = clock_ms(), hold_until = 0");
-  postgres::Store(url_, limits_, lease).tidy();
+  postgres::Store(url_, limits_, lease_of_stores).tidy();
   EXPECT_FALSE(a_.find("a"));
 }
 
@@ -174,7 +172,7 @@ TEST_F(PostgresClaims, NothingIsDroppedByAgeForADayWhenTheClockOfTheDatabaseWasS
 TEST_F(PostgresClaims, WhatALostOneHasStoredIsNoResult) {
   add("a", "anne");
   for (int i = 1; i <= 3; ++i) {
-    const Claim claim = *a_.claim();
+    const Claim claim = a_.claim().value();
     ask("INSERT INTO results VALUES ('a', " + std::to_string(claim.attempt) + ", 0, 'half')");
     lose("a");
     EXPECT_TRUE(ask("SELECT FROM results").empty());
@@ -188,7 +186,7 @@ TEST_F(PostgresClaims, WhatALostOneHasStoredIsNoResult) {
   EXPECT_EQ(b_.damaged(), 0u);
 
   add("b", "anne");
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   ask("INSERT INTO results VALUES ('b', 1, 0, 'half')");
   a_.give_back(claim);
   EXPECT_EQ(a_.cancel("b"), Cancellation::ended);
@@ -199,7 +197,7 @@ TEST_F(PostgresClaims, WhatALostOneHasStoredIsNoResult) {
 /// The connection broke off when the end was done.
 TEST_F(PostgresClaims, AnEndThatIsToldAgainIsNoStaleWrite) {
   add("a", "anne");
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   const Ending ending = success(std::size_t{3} << 20);
   EXPECT_TRUE(a_.finish(claim, ending));
   EXPECT_FALSE(a_.finish(claim, ending));
@@ -210,7 +208,7 @@ TEST_F(PostgresClaims, AnEndThatIsToldAgainIsNoStaleWrite) {
 
 TEST_F(PostgresClaims, TellOfAnEndedJobInOnePiece) {
   add("a", "anne");
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   Heartbeat beat;
   beat.job = "a";
   beat.attempt = claim.attempt;
@@ -229,7 +227,7 @@ TEST_F(PostgresClaims, HowFarASolveIsIsKnownWithoutItsIterations) {
   add("a", "anne");
   Heartbeat beat;
   beat.job = "a";
-  beat.attempt = a_.claim()->attempt;
+  beat.attempt = a_.claim().value().attempt;
   beat.advance.iterations.resize(5);
   beat.advance.progress.iteration = 5;
   a_.fleet()->renew(std::span(&beat, 1));
@@ -242,7 +240,7 @@ TEST_F(PostgresClaims, HowFarASolveIsIsKnownWithoutItsIterations) {
 /// While its runner goes on: never an iteration that its state does not know.
 TEST_F(PostgresClaims, TheStateAndTheIterationsOfASolveAreOfOneMoment) {
   add("a", "anne");
-  const std::uint64_t attempt = a_.claim()->attempt;
+  const std::uint64_t attempt = a_.claim().value().attempt;
   std::jthread runner([&](const std::stop_token& stop) {
     Heartbeat beat;
     beat.job = "a";

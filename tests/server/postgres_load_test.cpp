@@ -138,7 +138,7 @@ TEST(PostgresLoad, AnOwnerOfATenthOfTheLoadWaitsForItsShareAlone) {
     } else {
       post("large", backlog + moment);
     }
-    const Claim claim = *store.claim();
+    const Claim claim = store.claim().value();
     store.finish(claim, success());
     if (claim.job.owner == "small") waits.push_back(moment + 1 - posted.at(claim.job.id));
   }

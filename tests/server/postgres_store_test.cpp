@@ -17,8 +17,6 @@ namespace {
 using namespace std::chrono_literals;
 using postgres::Connection;
 
-constexpr auto lease = 300ms;
-
 /// Two processes with one database.
 class PostgresStore : public testing::Test {
  protected:
@@ -36,20 +34,20 @@ class PostgresStore : public testing::Test {
   Found look(const Sought& sought) const { return b_.fleet()->look(std::span(&sought, 1)).at(0); }
 
   const std::string url_ = empty_database();
-  postgres::Store a_{url_, limits(), lease};
-  mutable postgres::Store b_{url_, limits(), lease};
+  postgres::Store a_{url_, limits(), lease_of_stores};
+  mutable postgres::Store b_{url_, limits(), lease_of_stores};
 };
 
 TEST_F(PostgresStore, OneThatIsSilentLosesItsJobAndNothingMoreIsAcceptedOfIt) {
   a_.add(new_job("a"));
-  const Claim lost = *a_.claim();
+  const Claim lost = a_.claim().value();
   b_.fleet()->rescue();
   EXPECT_FALSE(b_.claim());
-  std::this_thread::sleep_for(lease);
+  std::this_thread::sleep_for(lease_of_stores);
   b_.fleet()->rescue();
   EXPECT_EQ(b_.find("a")->status, JobStatus::queued);
   EXPECT_FALSE(b_.find("a")->started);
-  const Claim held = *b_.claim();
+  const Claim held = b_.claim().value();
   EXPECT_GT(held.attempt, lost.attempt);
   EXPECT_EQ(renew(a_, beat(lost)), Standing::lost);
   EXPECT_FALSE(a_.finish(lost, success()));
@@ -64,9 +62,9 @@ TEST_F(PostgresStore, OneThatIsSilentLosesItsJobAndNothingMoreIsAcceptedOfIt) {
 
 TEST_F(PostgresStore, OneThatRenewsKeepsItsJob) {
   a_.add(new_job("a"));
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   for (int i = 0; i < 6; ++i) {
-    std::this_thread::sleep_for(lease / 3);
+    std::this_thread::sleep_for(lease_of_stores / 3);
     EXPECT_EQ(renew(a_, beat(claim)), Standing::held);
     b_.fleet()->rescue();
   }
@@ -75,10 +73,10 @@ TEST_F(PostgresStore, OneThatRenewsKeepsItsJob) {
 
 TEST_F(PostgresStore, AJobIsTriedThreeTimesButWhatIsGivenBackDoesNotCount) {
   a_.add(new_job("a"));
-  for (int i = 0; i < 4; ++i) EXPECT_TRUE(a_.give_back(*a_.claim()));
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(a_.give_back(a_.claim().value()));
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(a_.claim()) << i;
-    std::this_thread::sleep_for(lease + 1ms);
+    std::this_thread::sleep_for(lease_of_stores + 1ms);
     b_.fleet()->rescue();
   }
   const Job job = *a_.find("a");
@@ -91,11 +89,11 @@ TEST_F(PostgresStore, AJobIsTriedThreeTimesButWhatIsGivenBackDoesNotCount) {
 
 TEST_F(PostgresStore, OneRunsWhatAnotherCancels) {
   a_.add(new_job("a"));
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   EXPECT_EQ(b_.cancel("a"), Cancellation::asked);
   EXPECT_EQ(renew(a_, beat(claim)), Standing::to_be_cancelled);
   EXPECT_FALSE(a_.give_back(claim));
-  std::this_thread::sleep_for(lease + 1ms);
+  std::this_thread::sleep_for(lease_of_stores + 1ms);
   b_.fleet()->rescue();
   EXPECT_EQ(b_.find("a")->status, JobStatus::cancelled);
 }
@@ -103,7 +101,7 @@ TEST_F(PostgresStore, OneRunsWhatAnotherCancels) {
 TEST_F(PostgresStore, AnotherSeesHowFarASolveIs) {
   a_.add(new_job("a"));
   EXPECT_EQ(look({"a"}).attempt, 0u);
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   Heartbeat heartbeat = beat(claim);
   heartbeat.advance.progress.phase = Phase::iterate;
   heartbeat.advance.iterations.resize(2);
@@ -135,7 +133,7 @@ TEST_F(PostgresStore, AnotherSeesHowFarASolveIs) {
 
 TEST_F(PostgresStore, ALargeResultIsKeptInPieces) {
   a_.add(new_job("a"));
-  const Claim claim = *a_.claim();
+  const Claim claim = a_.claim().value();
   const Ending ending = success(std::size_t{5} << 20);
   EXPECT_TRUE(a_.finish(claim, ending));
   EXPECT_EQ(b_.result("a")->solution->displacement_at_points, ending.solution->displacement_at_points);
@@ -146,7 +144,7 @@ TEST_F(PostgresStore, ALargeResultIsKeptInPieces) {
 TEST_F(PostgresStore, WhatIsDamagedFailsAndHarmsNoOther) {
   for (const char* id : {"a", "b"}) {
     a_.add(new_job(id));
-    a_.finish(*a_.claim(), success(2000));
+    a_.finish(a_.claim().value(), success(2000));
   }
   Connection(url_, 5s).script(
       "UPDATE results SET bytes = set_byte(bytes, 999, get_byte(bytes, 999) # 1) "
@@ -181,7 +179,7 @@ TEST_F(PostgresStore, ABatchIsOneRequestHasItsKeyAndGoesWithItsJobs) {
     job.batch = "x";
     batch.jobs.push_back(job);
   }
-  postgres::Store small(url_, limits(2), lease);
+  postgres::Store small(url_, limits(2), lease_of_stores);
   small.add(batch);
   EXPECT_EQ(b_.add(batch).id, "x");
   EXPECT_EQ(b_.find_batch("x")->jobs, batch.batch.jobs);
@@ -194,7 +192,7 @@ TEST_F(PostgresStore, ABatchIsOneRequestHasItsKeyAndGoesWithItsJobs) {
   EXPECT_THROW(b_.add(with_its_key), KeyReused);
 
   EXPECT_FALSE(a_.ends_of_batch("x", 0).all);
-  EXPECT_TRUE(a_.finish(*a_.claim(), success()));
+  EXPECT_TRUE(a_.finish(a_.claim().value(), success()));
   BatchEnds ends = b_.ends_of_batch("x", 0);
   EXPECT_EQ(ends.jobs, std::vector<std::string>{"b"});
   EXPECT_EQ(a_.cancel("c"), Cancellation::ended);
@@ -214,8 +212,8 @@ TEST_F(PostgresStore, AnOwnerOfManyJobsLeavesOthersTheirTurn) {
     a_.add(job);
   };
   for (const char* id : {"a1", "a2", "a3", "a4", "a5"}) add(id, "anne");
-  EXPECT_EQ(a_.claim()->job.id, "a1");
-  EXPECT_EQ(a_.claim()->job.id, "a2");
+  EXPECT_EQ(a_.claim().value().job.id, "a1");
+  EXPECT_EQ(a_.claim().value().job.id, "a2");
   for (const char* id : {"b1", "b2"}) add(id, "bert");
   std::vector<std::string> order;
   while (const auto claim = b_.claim()) order.push_back(claim->job.id);
@@ -256,7 +254,7 @@ TEST_F(PostgresStore, WhatTakesTooMuchMemoryWaitsForAnother) {
   large.predicted_memory = 100;
   a_.add(large);
   EXPECT_FALSE(a_.fleet()->claim({.memory = 99}));
-  EXPECT_EQ(b_.fleet()->claim({.memory = 100})->predicted_memory, 100);
+  EXPECT_EQ(b_.fleet()->claim({.memory = 100}).value().predicted_memory, 100);
   for (const char* id : {"b", "c"}) {
     NewJob of_anne = new_job(id);
     of_anne.predicted_memory = 60;
@@ -264,7 +262,7 @@ TEST_F(PostgresStore, WhatTakesTooMuchMemoryWaitsForAnother) {
     of_anne.share.memory = 100;
     a_.add(of_anne);
   }
-  const Claim first = *a_.claim();
+  const Claim first = a_.claim().value();
   EXPECT_FALSE(b_.claim());
   a_.finish(first, success());
   EXPECT_TRUE(b_.claim());
@@ -272,7 +270,7 @@ TEST_F(PostgresStore, WhatTakesTooMuchMemoryWaitsForAnother) {
 
 TEST_F(PostgresStore, ANewerOneIsRefused) {
   Connection(url_, 5s).script("UPDATE schema_version SET version = 99");
-  EXPECT_THROW(postgres::Store(url_, limits(), lease), CannotOpenStore);
+  EXPECT_THROW(postgres::Store(url_, limits(), lease_of_stores), CannotOpenStore);
 }
 
 TEST_F(PostgresStore, ManyThatStartAtTheSameTimeMakeTheTablesOnce) {
@@ -281,7 +279,7 @@ TEST_F(PostgresStore, ManyThatStartAtTheSameTimeMakeTheTablesOnce) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 6; ++i)
     threads.emplace_back([&] {
-      postgres::Store(fresh, limits(), lease).count();
+      postgres::Store(fresh, limits(), lease_of_stores).count();
       ++opened;
     });
   for (std::thread& thread : threads) thread.join();
@@ -299,7 +297,7 @@ TEST_F(PostgresStore, WhatIsNoIdIsNotThere) {
 
 TEST_F(PostgresStore, IsThereAgainWhenItsServerIs) {
   PostgresServer server;
-  postgres::Store store(server.new_database("jobs"), limits(), lease);
+  postgres::Store store(server.new_database("jobs"), limits(), lease_of_stores);
   store.add(new_job("a"));
   EXPECT_FALSE(store.trouble());
   server.end(SIGQUIT);
@@ -310,7 +308,7 @@ TEST_F(PostgresStore, IsThereAgainWhenItsServerIs) {
   std::this_thread::sleep_for(600ms);
   EXPECT_FALSE(store.trouble());
   EXPECT_EQ(store.add(new_job("b")), "b");
-  EXPECT_EQ(store.claim()->job.id, "a");
+  EXPECT_EQ(store.claim().value().job.id, "a");
 }
 
 TEST_F(PostgresStore, HintsComeFromOthers) {

@@ -30,8 +30,6 @@ using postgres::Connection;
 using Clock = std::chrono::steady_clock;
 
 const StoreLimits limits{1000, plenty, std::chrono::hours(1)};
-constexpr auto lease = 300ms;
-
 /// The URL of the same database.
 std::string through(const TcpProxy& proxy, const std::string& url) {
   const std::size_t begin = url.find("@/") + 1, end = url.find('?');
@@ -40,11 +38,11 @@ std::string through(const TcpProxy& proxy, const std::string& url) {
 
 TEST(PostgresTrouble, ClaimsAreRenewedAndRescuedWhileAllOtherConnectionsAreInUse) {
   const std::string url = empty_database();
-  postgres::Store store(url, limits, lease);
+  postgres::Store store(url, limits, lease_of_stores);
   store.add(new_job("a"));
   Heartbeat beat;
   beat.job = "a";
-  beat.attempt = store.claim()->attempt;
+  beat.attempt = store.claim().value().attempt;
   Connection locker(url, 20s);
   locker.script("BEGIN; LOCK TABLE job_tags IN ACCESS EXCLUSIVE MODE");
   std::vector<std::future<JobPage>> readers;
@@ -119,9 +117,9 @@ TEST(PostgresTrouble, OfSeveralHostsTheOneThatTakesWritesIsFound) {
   if (!long_tests()) GTEST_SKIP() << "starts servers";
   PostgresServer first, second;
   const std::string url = first.new_database("jobs");
-  postgres::Store(second.new_database("jobs"), limits, lease).count();
+  postgres::Store(second.new_database("jobs"), limits, lease_of_stores).count();
   postgres::Store store("postgresql://signorini@/jobs?host=" + first.directory() + "," + second.directory(),
-                        limits, lease);
+                        limits, lease_of_stores);
   store.add(new_job("a"));
   Connection(first.url("postgres"), 5s).script("ALTER SYSTEM SET default_transaction_read_only = on");
   Connection(first.url("postgres"), 5s).script("SELECT pg_reload_conf()");
@@ -143,7 +141,7 @@ TEST(PostgresTrouble, ADatabaseThatCannotHoldAllTextsIsRefused) {
 }
 
 TEST(PostgresTrouble, TextsWithoutMeaningDoNoHarm) {
-  postgres::Store store(empty_database(), limits, lease);
+  postgres::Store store(empty_database(), limits, lease_of_stores);
   NewJob job = new_job("a");
   job.title = std::string("a\0b", 3);
   job.tags = {"\"}',{\\", "NULL", "ü"};
@@ -233,22 +231,22 @@ TEST(PostgresTrouble, TheDatabaseIsReachedByTlsAsTheUrlSays) {
       "&sslcert=" + server.file("client.crt") + "&sslkey=" + server.file("client.key");
   ASSERT_TRUE(becomes([&] {
     try {
-      postgres::Store(server.url(verified + as_client), limits, lease).count();
+      postgres::Store(server.url(verified + as_client), limits, lease_of_stores).count();
       return true;
     } catch (const CannotOpenStore&) {
       return false;  // it reads its configuration a moment later
     }
   }));
-  postgres::Store store(server.url(verified + as_client), limits, lease);
+  postgres::Store store(server.url(verified + as_client), limits, lease_of_stores);
   store.add(new_job("a"));
-  EXPECT_EQ(store.claim()->job.id, "a");
+  EXPECT_EQ(store.claim().value().job.id, "a");
   EXPECT_EQ(server.ask("SELECT FROM pg_stat_ssl JOIN pg_stat_activity USING (pid) "
                        "WHERE ssl AND client_dn = '/CN=signorini' AND application_name = 'signorinid'")
                     .size() > 0,
             true);
   const auto refusal = [&](const std::string& parameters) -> std::string {
     try {
-      postgres::Store(server.url(parameters), limits, lease).count();
+      postgres::Store(server.url(parameters), limits, lease_of_stores).count();
     } catch (const CannotOpenStore& refused) {
       return refused.what();
     }

@@ -57,25 +57,25 @@ TEST_F(SqliteStoreTest, KeepsEverythingAcrossProcesses) {
   SqliteStore& first = reopen();
   first.add(new_job("a", "{1}", "key"));
   const Ending ending = success(800);
-  first.finish(*first.claim(), ending);
+  first.finish(first.claim().value(), ending);
   first.add(new_job("b", "{2}"));
 
   SqliteStore& second = reopen();
   EXPECT_EQ(second.find("a")->status, JobStatus::succeeded);
   EXPECT_EQ(second.result("a")->solution->displacement_at_points, ending.solution->displacement_at_points);
   EXPECT_EQ(second.add(new_job("c", "{1}", "key")), "a");
-  EXPECT_EQ(*second.claim()->problem, "{2}");
+  EXPECT_EQ(*second.claim().value().problem, "{2}");
 }
 
 TEST_F(SqliteStoreTest, QueuesAgainWhatRanWhenTheProcessDied) {
   SqliteStore& first = reopen();
   first.add(new_job("a"));
-  const Claim dead = *first.claim();
+  const Claim dead = first.claim().value();
   SqliteStore& second = reopen();
   ASSERT_EQ(second.find("a")->status, JobStatus::queued);
   EXPECT_FALSE(second.find("a")->started);
   EXPECT_FALSE(second.finish(dead, success()));
-  const Claim claim = *second.claim();
+  const Claim claim = second.claim().value();
   EXPECT_NE(claim.attempt, dead.attempt);
   EXPECT_FALSE(second.finish(dead, success()));
   EXPECT_TRUE(second.finish(claim, success()));
@@ -98,7 +98,7 @@ TEST_F(SqliteStoreTest, AnAttemptGivenBackDoesNotCount) {
   reopen().add(new_job("a"));
   for (int i = 0; i < 5; ++i) {
     SqliteStore& store = reopen();
-    EXPECT_TRUE(store.give_back(*store.claim()));
+    EXPECT_TRUE(store.give_back(store.claim().value()));
   }
   for (int attempt = 1; attempt <= 3; ++attempt) EXPECT_TRUE(reopen().claim()) << attempt;
   EXPECT_EQ(reopen().find("a")->status, JobStatus::failed);
@@ -116,11 +116,11 @@ TEST_F(SqliteStoreTest, CountsWhatIsThereAlready) {
   SqliteStore& first = reopen();
   for (const char* id : {"a", "b"}) {
     first.add(new_job(id));
-    first.finish(*first.claim(), success(10'000));
+    first.finish(first.claim().value(), success(10'000));
   }
   SqliteStore& second = reopen({100, 25'000, std::chrono::hours(1)});
   second.add(new_job("c"));
-  second.finish(*second.claim(), success(10'000));
+  second.finish(second.claim().value(), success(10'000));
   EXPECT_EQ(ids(second.list({})), (std::vector<std::string>{"c", "b"}));
 }
 
@@ -129,7 +129,7 @@ TEST_F(SqliteStoreTest, LeavesNothingOfWhatIsRemoved) {
   NewJob job = new_job("a", "{}", "key");
   job.tags = {"t"};
   store.add(job);
-  store.finish(*store.claim(), success(1000));
+  store.finish(store.claim().value(), success(1000));
   store.remove_ended("a");
   close();
   SQLite::Database raw = database();
@@ -240,7 +240,7 @@ TEST_F(SqliteStoreTest, RefusesWhileTheDiskFailsAndRecovers) {
       SqliteStore& store = reopen();
       const std::string id = std::to_string(static_cast<int>(fault)) + std::to_string(writes_before);
       store.add(new_job(id + "a"));
-      const Claim claim = *store.claim();
+      const Claim claim = store.claim().value();
       EXPECT_FALSE(store.trouble());
 
       FaultyDisk::fail(fault, writes_before);
@@ -256,7 +256,7 @@ TEST_F(SqliteStoreTest, RefusesWhileTheDiskFailsAndRecovers) {
       EXPECT_FALSE(store.find(id + "b"));
       EXPECT_TRUE(store.finish(claim, success(100'000)));
       EXPECT_EQ(store.add(new_job(id + "b", "{}", id)), id + "b");
-      store.finish(*store.claim(), success());
+      store.finish(store.claim().value(), success());
       EXPECT_EQ(reopen().find(id + "a")->status, JobStatus::succeeded);
     }
   }
@@ -267,10 +267,10 @@ TEST_F(SqliteStoreTest, RefusesWhileTheDiskFailsAndRecovers) {
 TEST_F(SqliteStoreTest, ASolveAloneCostsTwoSyncs) {
   SqliteStore& store = reopen();
   store.add(new_job("first"));
-  store.finish(*store.claim(), success());
+  store.finish(store.claim().value(), success());
   const int before = FaultyDisk::syncs();
   store.add(new_job("a"));
-  store.finish(*store.claim(), success(20'000));
+  store.finish(store.claim().value(), success(20'000));
   store.result("a");
   EXPECT_EQ(FaultyDisk::syncs() - before, 2);
 }
@@ -309,7 +309,7 @@ TEST_F(SqliteStoreTest, AFullDiskIsFreedByDeleting) {
   SqliteStore& first = reopen(limits);
   for (const char* id : {"a", "b"}) {
     first.add(new_job(id));
-    first.finish(*first.claim(), success(3 << 20));
+    first.finish(first.claim().value(), success(3 << 20));
   }
   SqliteStore& store = reopen(limits);
   const auto size = std::filesystem::file_size(file());
@@ -332,7 +332,7 @@ TEST_F(SqliteStoreTest, AFullDiskTakesOneDeletionAfterTheOther) {
   constexpr int jobs = 12;
   for (int i = 0; i < jobs; ++i) {
     store.add(new_job(std::to_string(i)));
-    store.finish(*store.claim(), success(450'000));
+    store.finish(store.claim().value(), success(450'000));
   }
   FaultyDisk::fail(FaultyDisk::Fault::no_room);
   for (int i = 0; i < jobs; ++i) EXPECT_TRUE(store.remove_ended(std::to_string(i))) << i;
@@ -359,7 +359,7 @@ TEST_F(SqliteStoreTest, TheFileShrinksAgain) {
   SqliteStore& store = reopen();
   for (int i = 0; i < 5; ++i) {
     store.add(new_job(std::to_string(i)));
-    store.finish(*store.claim(), success(4 << 20));
+    store.finish(store.claim().value(), success(4 << 20));
   }
   close();
   const auto full = std::filesystem::file_size(file());
@@ -407,7 +407,7 @@ TEST_F(SqliteStoreTest, AReaderDoesNotWaitForAWriter) {
   SqliteStore& store = reopen();
   store.add(new_job("a"));
   store.add(new_job("b"));
-  const Claim claim = *store.claim();
+  const Claim claim = store.claim().value();
   std::atomic<bool> written = false;
   std::thread writer([&] {
     store.finish(claim, success(std::size_t{100} << 20));
