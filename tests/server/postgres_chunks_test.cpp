@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "becomes.hpp"
+#include "lost_claim.hpp"
 #include "postgres_server.hpp"
 #include "server/jobs/postgres/store.hpp"
 #include "server/jobs/run.hpp"
@@ -45,10 +46,6 @@ class PostgresChunks : public testing::Test {
     beat.job = claim.job.id;
     beat.attempt = claim.attempt;
     return b_.fleet()->renew(std::span(&beat, 1)).front();
-  }
-  void lose(const std::string& id) {
-    ask("UPDATE leases SET until = 0 WHERE job = '" + id + "'");
-    fleet_.rescue();
   }
   postgres::Rows ask(const std::string& sql) { return Connection(url_, 5s).run(sql); }
 
@@ -128,17 +125,17 @@ TEST_F(PostgresChunks, AreRescuedByThemselvesAndOutliveTheRunnerOfTheWhole) {
   for (int attempt = 1; attempt <= 3; ++attempt) {
     const Claim chunk = b_.claim().value();
     EXPECT_EQ(chunk.attempt, static_cast<std::uint64_t>(attempt));
-    lose(chunk.job.id);
+    EXPECT_TRUE(lose(url_, fleet_, chunk.job.id));
     EXPECT_FALSE(b_.finish(chunk, entries(2)));
     EXPECT_EQ(fleet_.chunks("a").front().is_given_up, attempt == 3);
   }
   EXPECT_EQ(standing_of(whole), Standing::held);
-  lose("a");
+  EXPECT_TRUE(lose(url_, fleet_, "a"));
   EXPECT_EQ(fleet_.chunks("a").size(), 1u);
   EXPECT_FALSE(fleet_.split(whole, {}));
   EXPECT_EQ(b_.claim().value().job.id, "a");
   EXPECT_EQ(b_.cancel("a"), Cancellation::asked);
-  lose("a");
+  EXPECT_TRUE(lose(url_, fleet_, "a"));
   EXPECT_EQ(b_.find("a")->status, JobStatus::cancelled);
   EXPECT_TRUE(fleet_.chunks("a").empty());
 }

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lost_claim.hpp"
 #include "postgres_server.hpp"
 #include "server/jobs/postgres/store.hpp"
 #include "store_jobs.hpp"
@@ -41,10 +42,6 @@ class PostgresClaims : public testing::Test {
         "CREATE OR REPLACE FUNCTION clock_ms() RETURNS bigint LANGUAGE sql VOLATILE AS "
         "$$ SELECT (extract(epoch FROM clock_timestamp() + interval '" +
         by + "') * 1000)::bigint $$");
-  }
-  void lose(const std::string& id) {
-    ask("UPDATE leases SET until = 0 WHERE job = '" + id + "'");
-    b_.fleet()->rescue();
   }
 
   const std::string url_ = empty_database();
@@ -174,7 +171,7 @@ TEST_F(PostgresClaims, WhatALostOneHasStoredIsNoResult) {
   for (int i = 1; i <= 3; ++i) {
     const Claim claim = a_.claim().value();
     ask("INSERT INTO results VALUES ('a', " + std::to_string(claim.attempt) + ", 0, 'half')");
-    lose("a");
+    EXPECT_TRUE(lose(url_, *b_.fleet(), "a"));
     EXPECT_TRUE(ask("SELECT FROM results").empty());
   }
   // As a piece that comes late would be.

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -116,8 +115,6 @@ void PostgresServer::end(int signal) {
 
 PostgresServer& shared_postgres() {
   static PostgresServer server;
-  static std::once_flag started;
-  std::call_once(started, [] { std::this_thread::sleep_for(lease_of_stores + 1ms); });
   return server;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
@@ -39,11 +38,7 @@ class PostgresServer {
   pid_t pid_ = -1;
 };
 
-/// How long a claim is held in the stores of tests that lose some.
-constexpr std::chrono::milliseconds lease_of_stores{300};
-
-/// One that all tests of a process share, and which has run for longer than that: before, no claim would be
-/// rescued. The URL of an empty database of it.
+/// One that all tests of a process share; the URL of an empty database of it.
 PostgresServer& shared_postgres();
 std::string empty_database();
 

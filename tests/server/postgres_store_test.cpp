@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lost_claim.hpp"
 #include "postgres_server.hpp"
 #include "server/jobs/postgres/url.hpp"
 #include "store_jobs.hpp"

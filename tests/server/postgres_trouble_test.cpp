@@ -14,6 +14,7 @@
 #include "../problems/sanitized.hpp"
 #include "becomes.hpp"
 #include "example_problems.hpp"
+#include "lost_claim.hpp"
 #include "postgres_server.hpp"
 #include "replica.hpp"
 #include "server/jobs/postgres/store.hpp"
